@@ -1,0 +1,215 @@
+//! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
+
+use crate::error::{Error, Result};
+use glam::Vec3;
+
+/// Where the unit frame lies in the caller's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Centre of the bounding box, in the caller's frame and unit.
+    pub center: [f64; 3],
+    /// Diagonal of the bounding box in the caller's unit; 1 when all points are equal.
+    pub diagonal: f64,
+}
+
+impl Frame {
+    /// The frame of these points, or the index of the first coordinate that is not finite.
+    fn of(positions: &[f64]) -> std::result::Result<Frame, usize> {
+        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for (i, &x) in positions.iter().enumerate() {
+            if !x.is_finite() {
+                return Err(i);
+            }
+            lo[i % 3] = lo[i % 3].min(x);
+            hi[i % 3] = hi[i % 3].max(x);
+        }
+        // Halved before they are added or subtracted: extents up to the largest f64 do not overflow.
+        let center = [0, 1, 2].map(|a| lo[a] * 0.5 + hi[a] * 0.5);
+        let half = [0, 1, 2].map(|a| hi[a] * 0.5 - lo[a] * 0.5);
+        let longest = half[0].max(half[1]).max(half[2]);
+        let diagonal = if longest > 0.0 {
+            let h = half.map(|x| x / longest);
+            2.0 * longest * (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt()
+        } else {
+            1.0
+        };
+        Ok(Frame { center, diagonal })
+    }
+
+    /// A point of the caller's frame in the unit frame.
+    pub fn to_unit(&self, p: [f64; 3]) -> Vec3 {
+        let q = [0, 1, 2].map(|a| ((p[a] - self.center[a]) / self.diagonal) as f32);
+        Vec3::from_array(q)
+    }
+
+    /// A point of the unit frame in the caller's frame.
+    pub fn to_caller(&self, p: Vec3) -> [f64; 3] {
+        let p = p.to_array();
+        [0, 1, 2].map(|a| p[a] as f64 * self.diagonal + self.center[a])
+    }
+}
+
+/// One scalar a point: intensity, classification, time …
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attribute {
+    /// The caller's name for it.
+    pub name: String,
+    /// One value a point.
+    pub values: Vec<f32>,
+}
+
+/// Points in the unit frame with whatever the caller attached to them. Every array has one entry a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cloud {
+    /// Bounding box centred at the origin, diagonal 1.
+    pub points: Vec<Vec3>,
+    /// Where the unit frame lies in the caller's.
+    pub frame: Frame,
+    /// Red, green, blue, 0-255.
+    pub colors: Option<Vec<[u8; 3]>>,
+    /// Unit normals.
+    pub normals: Option<Vec<Vec3>>,
+    /// Scalars, in the caller's order.
+    pub attributes: Vec<Attribute>,
+    /// Added to the caller's positions to give world coordinates; carried along.
+    pub origin: Option<[f64; 3]>,
+}
+
+impl Cloud {
+    /// From `x y z x y z …` in the caller's frame.
+    ///
+    /// # Errors
+    /// [`Error::EmptyCloud`], [`Error::BadLength`] (not a multiple of 3), [`Error::NonFinite`] (the point's index).
+    pub fn from_f64(positions: &[f64]) -> Result<Cloud> {
+        if !positions.len().is_multiple_of(3) {
+            return Err(Error::BadLength {
+                array: "positions".into(),
+                expected: "a multiple of 3".into(),
+                found: positions.len(),
+            });
+        }
+        if positions.is_empty() {
+            return Err(Error::EmptyCloud);
+        }
+        let frame = Frame::of(positions).map_err(|i| Error::NonFinite {
+            array: "positions".into(),
+            index: i / 3,
+            found: positions[i],
+        })?;
+        let points = positions
+            .chunks_exact(3)
+            .map(|p| frame.to_unit([p[0], p[1], p[2]]))
+            .collect();
+        Ok(Cloud {
+            points,
+            frame,
+            colors: None,
+            normals: None,
+            attributes: Vec::new(),
+            origin: None,
+        })
+    }
+
+    /// [`Cloud::from_f64`] for single precision.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn from_f32(positions: &[f32]) -> Result<Cloud> {
+        Cloud::from_f64(&positions.iter().map(|&x| x as f64).collect::<Vec<_>>())
+    }
+
+    /// Number of points, at least 1.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Never true for a cloud made by [`Cloud::from_f64`].
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Adds colours, `r g b` 0-255 a point.
+    ///
+    /// # Errors
+    /// [`Error::BadLength`].
+    pub fn with_colors(mut self, colors: &[u8]) -> Result<Cloud> {
+        self.check_length("colors", colors.len(), 3)?;
+        self.colors = Some(colors.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect());
+        Ok(self)
+    }
+
+    /// Adds normals, `x y z` a point; made unit length here, zero stays zero.
+    ///
+    /// # Errors
+    /// [`Error::BadLength`], [`Error::NonFinite`].
+    pub fn with_normals(mut self, normals: &[f32]) -> Result<Cloud> {
+        self.check_length("normals", normals.len(), 3)?;
+        check_finite("normals", normals, 3)?;
+        self.normals = Some(
+            normals
+                .chunks_exact(3)
+                .map(|n| Vec3::new(n[0], n[1], n[2]).normalize_or_zero())
+                .collect(),
+        );
+        Ok(self)
+    }
+
+    /// Adds a scalar, one value a point.
+    ///
+    /// # Errors
+    /// [`Error::BadLength`], [`Error::NonFinite`].
+    pub fn with_attribute(mut self, name: &str, values: &[f32]) -> Result<Cloud> {
+        self.check_length(name, values.len(), 1)?;
+        check_finite(name, values, 1)?;
+        self.attributes.push(Attribute {
+            name: name.into(),
+            values: values.to_vec(),
+        });
+        Ok(self)
+    }
+
+    /// Sets the origin that is added to positions to give world coordinates.
+    pub fn with_origin(mut self, origin: [f64; 3]) -> Cloud {
+        self.origin = Some(origin);
+        self
+    }
+
+    /// `x y z …` in the caller's frame.
+    pub fn positions_f64(&self) -> Vec<f64> {
+        self.points
+            .iter()
+            .flat_map(|&p| self.frame.to_caller(p))
+            .collect()
+    }
+
+    /// `x y z …` in the caller's frame, rounded to single precision.
+    pub fn positions_f32(&self) -> Vec<f32> {
+        self.points
+            .iter()
+            .flat_map(|&p| self.frame.to_caller(p).map(|x| x as f32))
+            .collect()
+    }
+
+    fn check_length(&self, array: &str, found: usize, each: usize) -> Result<()> {
+        let expected = self.len() * each;
+        if found == expected {
+            return Ok(());
+        }
+        Err(Error::BadLength {
+            array: array.into(),
+            expected: format!("{expected} ({each} a point)"),
+            found,
+        })
+    }
+}
+
+fn check_finite(array: &str, values: &[f32], each: usize) -> Result<()> {
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(Error::NonFinite {
+            array: array.into(),
+            index: i / each,
+            found: values[i] as f64,
+        }),
+    }
+}

@@ -1,0 +1,68 @@
+//! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives.
+
+use crate::params::Kernel;
+
+/// φ(r) and φ'(r)/r of the kernel, from r².
+///
+/// - biharmonic: φ = −r (the sign makes the interpolation matrix conditionally positive definite of order 1),
+/// - triharmonic: φ = r³ (order 2),
+/// - thin plate: φ = r² log r (order 2), the paper's.
+///
+/// Wendland, *Scattered Data Approximation*, 2005, section 8.3. φ'(r)/r is 0 at r = 0, where the biharmonic kernel has
+/// no derivative.
+#[inline]
+pub fn phi(kernel: Kernel, r2: f64) -> (f64, f64) {
+    match kernel {
+        Kernel::Triharmonic => {
+            let r = r2.sqrt();
+            (r2 * r, 3.0 * r)
+        }
+        Kernel::Biharmonic => {
+            let r = r2.sqrt();
+            (-r, if r > 0.0 { -1.0 / r } else { 0.0 })
+        }
+        Kernel::ThinPlate if r2 > 0.0 => {
+            let log = 0.5 * libm::log(r2);
+            (r2 * log, 2.0 * log + 1.0)
+        }
+        Kernel::ThinPlate => (0.0, 0.0),
+    }
+}
+
+/// Wendland's C² function ψ(t) = (1 − t)⁴ (4t + 1) on [0, 1] and ψ'(t)/t, zero beyond (Wendland, "Piecewise polynomial,
+/// positive definite and compactly supported radial functions of minimal degree", 1995).
+#[inline]
+pub fn wendland(t: f64) -> (f64, f64) {
+    if t >= 1.0 {
+        return (0.0, 0.0);
+    }
+    let u = 1.0 - t;
+    let u3 = u * u * u;
+    (u3 * u * (4.0 * t + 1.0), -20.0 * u3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_match_differences() {
+        let h = 1e-6;
+        for kernel in [Kernel::Biharmonic, Kernel::Triharmonic, Kernel::ThinPlate] {
+            for r in [0.1, 0.5, 1.0, 2.0] {
+                let f = |r: f64| phi(kernel, r * r).0;
+                let slope = (f(r + h) - f(r - h)) / (2.0 * h);
+                assert!(
+                    (slope - phi(kernel, r * r).1 * r).abs() < 1e-7,
+                    "{kernel:?} at {r}"
+                );
+            }
+        }
+        for t in [0.1, 0.5, 0.9] {
+            let slope = (wendland(t + h).0 - wendland(t - h).0) / (2.0 * h);
+            assert!((slope - wendland(t).1 * t).abs() < 1e-7);
+        }
+        assert_eq!(wendland(1.0), (0.0, 0.0));
+        assert_eq!(wendland(0.0).0, 1.0);
+    }
+}

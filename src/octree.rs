@@ -1,0 +1,403 @@
+//! A linear octree: points in Morton order, every cell a contiguous range of them, one tree for all neighbour queries
+//! and for the sub-domains of section 3.
+//!
+//! Nodes store the tight box of their points, so a query prunes as well as in a kd-tree. Levels in which all points fall
+//! into one octant make no node. Points that share all 21 bits an axis are cut by index, so duplicates cost no more
+//! than others.
+
+use glam::Vec3;
+use std::ops::Range;
+
+/// Points of a leaf: small enough that a scan is cheaper than another level.
+const LEAF: usize = 8;
+
+/// Bits an axis of a Morton key; three axes fit in 63 bits.
+pub const MAX_DEPTH: u32 = 21;
+
+/// A cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Node {
+    /// Its points: `start..end` of [`Octree::points`].
+    pub start: u32,
+    /// See `start`.
+    pub end: u32,
+    /// First child in [`Octree::nodes`]; children are contiguous.
+    first_child: u32,
+    /// 0 for a leaf, else 2-8.
+    children: u8,
+    /// Octree level of the cell, 0 for the root.
+    pub level: u8,
+    /// Tight lower corner of its points.
+    pub lo: Vec3,
+    /// Tight upper corner of its points.
+    pub hi: Vec3,
+}
+
+impl Node {
+    /// Its points.
+    pub fn range(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+
+    fn is_leaf(&self) -> bool {
+        self.children == 0
+    }
+
+    fn child_ids(&self) -> Range<usize> {
+        self.first_child as usize..self.first_child as usize + self.children as usize
+    }
+
+    fn distance2(&self, q: Vec3) -> f32 {
+        (self.lo - q)
+            .max(q - self.hi)
+            .max(Vec3::ZERO)
+            .length_squared()
+    }
+}
+
+/// A point found by a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Neighbor {
+    /// Squared distance in the unit frame.
+    pub distance2: f32,
+    /// Index in [`Octree::points`].
+    pub index: u32,
+}
+
+/// The tree. Positions are in the unit frame.
+#[derive(Debug, Clone)]
+pub struct Octree {
+    /// `order[i]` is the input's index of `points[i]`.
+    pub order: Vec<u32>,
+    /// The points in Morton order.
+    pub points: Vec<Vec3>,
+    /// Parents before children, the root first.
+    pub nodes: Vec<Node>,
+}
+
+impl Octree {
+    /// Builds the tree. Cost: n log n, about 40 bytes a point.
+    pub fn build(points: &[Vec3]) -> Octree {
+        let mut keyed: Vec<(u64, u32)> = points
+            .iter()
+            .enumerate()
+            .map(|(i, &p)| (morton(p), i as u32))
+            .collect();
+        keyed.sort_unstable();
+        let order: Vec<u32> = keyed.iter().map(|&(_, i)| i).collect();
+        let points: Vec<Vec3> = order.iter().map(|&i| points[i as usize]).collect();
+        let keys: Vec<u64> = keyed.iter().map(|&(k, _)| k).collect();
+        let mut tree = Octree {
+            order,
+            points,
+            nodes: Vec::new(),
+        };
+        let all = 0..keys.len();
+        tree.nodes.push(tree.node(all, 0));
+        let mut next = 0;
+        while next < tree.nodes.len() {
+            tree.split(next, &keys);
+            next += 1;
+        }
+        tree
+    }
+
+    fn node(&self, range: Range<usize>, level: u32) -> Node {
+        let (mut lo, mut hi) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+        for &p in &self.points[range.clone()] {
+            lo = lo.min(p);
+            hi = hi.max(p);
+        }
+        let (start, end) = (range.start as u32, range.end as u32);
+        Node {
+            start,
+            end,
+            first_child: 0,
+            children: 0,
+            level: level as u8,
+            lo,
+            hi,
+        }
+    }
+
+    fn split(&mut self, id: usize, keys: &[u64]) {
+        let range = self.nodes[id].range();
+        if range.len() <= LEAF {
+            return;
+        }
+        let differing = keys[range.start] ^ keys[range.end - 1];
+        let first_child = self.nodes.len() as u32;
+        if differing == 0 {
+            let middle = (range.start + range.end) / 2;
+            self.nodes.push(self.node(range.start..middle, MAX_DEPTH));
+            self.nodes.push(self.node(middle..range.end, MAX_DEPTH));
+        } else {
+            // The deepest level whose cell holds the whole range; its children are one level below.
+            let shift = (63 - differing.leading_zeros()) / 3 * 3;
+            let level = MAX_DEPTH - shift / 3;
+            let mut start = range.start;
+            while start < range.end {
+                let octant = keys[start] >> shift;
+                let end = start + keys[start..range.end].partition_point(|k| k >> shift == octant);
+                self.nodes.push(self.node(start..end, level));
+                start = end;
+            }
+        }
+        self.nodes[id].first_child = first_child;
+        self.nodes[id].children = (self.nodes.len() as u32 - first_child) as u8;
+    }
+
+    /// The coarsest cells for which `stop` is true, or leaves, in Morton order: together they hold every point once.
+    pub fn cut(&self, mut stop: impl FnMut(&Node) -> bool) -> Vec<Range<usize>> {
+        let mut out = Vec::new();
+        let mut stack = vec![0];
+        while let Some(id) = stack.pop() {
+            let node = &self.nodes[id];
+            if node.is_leaf() || stop(node) {
+                out.push(node.range());
+            } else {
+                stack.extend(node.child_ids().rev());
+            }
+        }
+        out
+    }
+
+    /// The `k` nearest points, nearest first, equal distances by index; `out` is cleared. About log n + k steps.
+    pub fn knn(&self, q: Vec3, k: usize, out: &mut Vec<Neighbor>) {
+        out.clear();
+        if k > 0 {
+            self.knn_below(0, q, k, out);
+        }
+    }
+
+    fn knn_below(&self, id: usize, q: Vec3, k: usize, out: &mut Vec<Neighbor>) {
+        let node = &self.nodes[id];
+        if node.is_leaf() {
+            for i in node.range() {
+                insert(
+                    out,
+                    k,
+                    Neighbor {
+                        distance2: self.points[i].distance_squared(q),
+                        index: i as u32,
+                    },
+                );
+            }
+            return;
+        }
+        let mut near = [(0.0, 0); 8];
+        let near = &mut near[..node.children as usize];
+        for (slot, child) in near.iter_mut().zip(node.child_ids()) {
+            *slot = (self.nodes[child].distance2(q), child);
+        }
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &(d2, child) in near.iter() {
+            if out.len() == k && d2 >= out[k - 1].distance2 {
+                break;
+            }
+            self.knn_below(child, q, k, out);
+        }
+    }
+
+    /// The nearest point.
+    pub fn nearest(&self, q: Vec3) -> Neighbor {
+        let mut best = Neighbor {
+            distance2: f32::INFINITY,
+            index: 0,
+        };
+        self.nearest_below(0, q, &mut best);
+        best
+    }
+
+    fn nearest_below(&self, id: usize, q: Vec3, best: &mut Neighbor) {
+        let node = &self.nodes[id];
+        if node.is_leaf() {
+            for i in node.range() {
+                let distance2 = self.points[i].distance_squared(q);
+                if distance2 < best.distance2 {
+                    *best = Neighbor {
+                        distance2,
+                        index: i as u32,
+                    };
+                }
+            }
+            return;
+        }
+        let mut near = [(0.0, 0); 8];
+        let near = &mut near[..node.children as usize];
+        for (slot, child) in near.iter_mut().zip(node.child_ids()) {
+            *slot = (self.nodes[child].distance2(q), child);
+        }
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &(d2, child) in near.iter() {
+            if d2 >= best.distance2 {
+                break;
+            }
+            self.nearest_below(child, q, best);
+        }
+    }
+
+    /// All points within `r` of `q`, by index; `out` is cleared.
+    pub fn within(&self, q: Vec3, r: f32, out: &mut Vec<Neighbor>) {
+        out.clear();
+        self.visit_boxes(
+            |node| node.distance2(q) <= r * r,
+            |i| {
+                let distance2 = self.points[i].distance_squared(q);
+                if distance2 <= r * r {
+                    out.push(Neighbor {
+                        distance2,
+                        index: i as u32,
+                    });
+                }
+            },
+        );
+    }
+
+    /// Calls `visit` with every point of every leaf all of whose ancestors and itself pass `enter`, by index.
+    pub fn visit_boxes(&self, enter: impl Fn(&Node) -> bool, mut visit: impl FnMut(usize)) {
+        // At most 7 siblings wait on each of the 21 levels and of the at most 32 halvings of equal keys.
+        let mut stack = Vec::with_capacity(64);
+        stack.push(0);
+        while let Some(id) = stack.pop() {
+            let node = &self.nodes[id];
+            if !enter(node) {
+                continue;
+            }
+            if node.is_leaf() {
+                node.range().for_each(&mut visit);
+            } else {
+                stack.extend(node.child_ids().rev());
+            }
+        }
+    }
+}
+
+/// Keeps the `k` smallest by (distance, index), ascending.
+fn insert(out: &mut Vec<Neighbor>, k: usize, n: Neighbor) {
+    if out.len() == k {
+        let last = out[k - 1];
+        if (n.distance2, n.index) >= (last.distance2, last.index) {
+            return;
+        }
+        out.pop();
+    }
+    let mut at = out.len();
+    while at > 0 && (out[at - 1].distance2, out[at - 1].index) > (n.distance2, n.index) {
+        at -= 1;
+    }
+    out.insert(at, n);
+}
+
+/// Interleaved bits of a position of the unit frame (every coordinate within ±0.5).
+fn morton(p: Vec3) -> u64 {
+    let cell =
+        |x: f32| (((x as f64 + 0.5) * (1u64 << MAX_DEPTH) as f64) as u64).min((1 << MAX_DEPTH) - 1);
+    spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z))
+}
+
+/// Two zero bits behind each of the 21 low bits.
+fn spread(x: u64) -> u64 {
+    let x = (x | x << 32) & 0x001F_0000_0000_FFFF;
+    let x = (x | x << 16) & 0x001F_0000_FF00_00FF;
+    let x = (x | x << 8) & 0x100F_00F0_0F00_F00F;
+    let x = (x | x << 4) & 0x10C3_0C30_C30C_30C3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    fn cloud(n: usize, duplicates: bool) -> Vec<Vec3> {
+        let mut rng = Rng::new(n as u64);
+        let mut at = || (rng.uniform() * 0.57 - 0.285) as f32;
+        let mut points: Vec<Vec3> = (0..n).map(|_| Vec3::new(at(), at(), at())).collect();
+        if duplicates {
+            points[n / 4..].fill(Vec3::splat(0.1));
+        }
+        points
+    }
+
+    #[test]
+    fn queries_agree_with_a_scan_of_all_points() {
+        for (n, duplicates) in [
+            (1, false),
+            (7, false),
+            (500, false),
+            (500, true),
+            (3000, true),
+        ] {
+            let tree = Octree::build(&cloud(n, duplicates));
+            let mut found = Vec::new();
+            for q in cloud(40, false)
+                .into_iter()
+                .chain([Vec3::splat(0.1), Vec3::splat(3.0)])
+            {
+                let mut all: Vec<Neighbor> = (0..n)
+                    .map(|i| Neighbor {
+                        distance2: tree.points[i].distance_squared(q),
+                        index: i as u32,
+                    })
+                    .collect();
+                all.sort_by(|a, b| {
+                    a.distance2
+                        .total_cmp(&b.distance2)
+                        .then(a.index.cmp(&b.index))
+                });
+                for k in [1, 5, 20] {
+                    tree.knn(q, k, &mut found);
+                    let d = |v: &[Neighbor]| v.iter().map(|n| n.distance2).collect::<Vec<_>>();
+                    assert_eq!(d(&found), d(&all[..k.min(n)]));
+                }
+                assert_eq!(tree.nearest(q).distance2, all[0].distance2);
+                tree.within(q, 0.2, &mut found);
+                let mut inside: Vec<u32> = all
+                    .iter()
+                    .filter(|n| n.distance2 <= 0.2 * 0.2)
+                    .map(|n| n.index)
+                    .collect();
+                inside.sort_unstable();
+                assert_eq!(found.iter().map(|n| n.index).collect::<Vec<_>>(), inside);
+            }
+        }
+    }
+
+    #[test]
+    fn cuts_hold_every_point_once_and_cells_are_tight() {
+        let input = cloud(5000, true);
+        let tree = Octree::build(&input);
+        for capacity in [1, 10, 100, 10_000] {
+            let mut next = 0;
+            for range in tree.cut(|node| node.range().len() <= capacity) {
+                assert_eq!(range.start, next);
+                next = range.end;
+            }
+            assert_eq!(next, 5000);
+        }
+        for node in &tree.nodes {
+            assert!(
+                tree.points[node.range()]
+                    .iter()
+                    .all(|&p| p.cmpge(node.lo).all() && p.cmple(node.hi).all())
+            );
+        }
+        assert!(
+            tree.order
+                .iter()
+                .zip(&tree.points)
+                .all(|(&i, &p)| input[i as usize] == p)
+        );
+    }
+
+    #[test]
+    fn a_hundred_thousand_equal_points_are_no_trap() {
+        let tree = Octree::build(&vec![Vec3::splat(0.25); 100_000]);
+        let mut found = Vec::new();
+        for _ in 0..1000 {
+            tree.knn(Vec3::ZERO, 16, &mut found);
+            assert_eq!(found.len(), 16);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The only algorithm code that knows of threads.
+//!
+//! Work is cut by index, every index writes its own result and results come back in index order: the same bytes with
+//! one thread or sixteen, and one code path for both builds.
+
+use crate::error::Result;
+use crate::progress::{Progress, Stage};
+
+/// `f(0), f(1), … f(n-1)`, in that order. `scratch` makes the reusable memory of one worker; what is left in it from
+/// other indices must not change a result.
+#[cfg(not(feature = "threads"))]
+pub fn map<S, T>(
+    n: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> T + Sync + Send,
+) -> Vec<T> {
+    let mut s = scratch();
+    (0..n).map(|i| f(i, &mut s)).collect()
+}
+
+/// `f(0), f(1), … f(n-1)`, in that order. `scratch` makes the reusable memory of one worker; what is left in it from
+/// other indices must not change a result.
+#[cfg(feature = "threads")]
+pub fn map<S, T: Send>(
+    n: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> T + Sync + Send,
+) -> Vec<T> {
+    use rayon::prelude::*;
+    (0..n)
+        .into_par_iter()
+        .map_init(scratch, |s, i| f(i, s))
+        .collect()
+}
+
+/// [`map`] in slices, with progress and a chance to cancel between them.
+///
+/// `weight` is about how many microseconds one index takes; slices last about 20 ms on one thread.
+pub fn map_progress<S, T: Send>(
+    n: usize,
+    weight: f32,
+    (stage, progress): (Stage, &mut dyn Progress),
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> T + Sync + Send,
+) -> Result<Vec<T>> {
+    let slice = ((20_000.0 / weight) as usize).max(1);
+    let mut out = Vec::with_capacity(n);
+    progress.update(stage, 0.0)?;
+    while out.len() < n {
+        let start = out.len();
+        let m = slice.min(n - start);
+        out.extend(map(m, &scratch, |i, s| f(start + i, s)));
+        progress.update(stage, out.len() as f32 / n as f32)?;
+    }
+    Ok(out)
+}
+
+/// How many threads [`map`] uses.
+pub fn threads() -> usize {
+    #[cfg(feature = "threads")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "threads"))]
+    return 1;
+}
