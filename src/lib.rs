@@ -34,11 +34,13 @@ pub mod kernel;
 pub mod linalg;
 pub mod par;
 pub mod params;
+pub mod power;
 pub mod progress;
 pub mod rng;
 
 // Stages, in the order in which data flows through them.
 pub mod cloud;
+pub mod fcm;
 pub mod features;
 pub mod octree;
 

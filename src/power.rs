@@ -1,0 +1,109 @@
+//! The two powers of fuzzy c-means: a distance ratio to a share of membership, a membership to its weight.
+//!
+//! For `m` of 2, 1.5 and 1.25 the exponents of eq. 5, `1/(m-1)`, are 1, 2 and 4, and `u^m` needs square roots only;
+//! any other fuzzifier takes `libm`.
+
+/// The powers that one fuzzifier asks for, in single or double precision.
+pub trait Power<T>: Copy {
+    /// `r^(1/(m-1))` of a ratio of squared distances (eq. 5).
+    fn share(self, ratio: T) -> T;
+    /// `u^m` (eq. 1, 2).
+    fn raise(self, u: T) -> T;
+}
+
+/// m = 2.
+#[derive(Clone, Copy, Debug)]
+pub struct TwoPower;
+/// m = 1.5.
+#[derive(Clone, Copy, Debug)]
+pub struct ThreeHalvesPower;
+/// m = 1.25.
+#[derive(Clone, Copy, Debug)]
+pub struct FiveQuartersPower;
+/// Any m.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyPower {
+    m: f64,
+    exponent: f64,
+}
+
+/// A fuzzifier, sorted by how its powers are computed.
+#[derive(Clone, Copy, Debug)]
+pub enum Fuzzifier {
+    /// m = 2.
+    Two(TwoPower),
+    /// m = 1.5.
+    ThreeHalves(ThreeHalvesPower),
+    /// m = 1.25.
+    FiveQuarters(FiveQuartersPower),
+    /// Any other m > 1.
+    Any(AnyPower),
+}
+
+impl Fuzzifier {
+    /// `m` > 1.
+    pub fn new(m: f64) -> Fuzzifier {
+        if m == 2.0 {
+            Fuzzifier::Two(TwoPower)
+        } else if m == 1.5 {
+            Fuzzifier::ThreeHalves(ThreeHalvesPower)
+        } else if m == 1.25 {
+            Fuzzifier::FiveQuarters(FiveQuartersPower)
+        } else {
+            Fuzzifier::Any(AnyPower {
+                m,
+                exponent: 1.0 / (m - 1.0),
+            })
+        }
+    }
+}
+
+macro_rules! powers {
+    ($float:ty) => {
+        impl Power<$float> for TwoPower {
+            #[inline(always)]
+            fn share(self, ratio: $float) -> $float {
+                ratio
+            }
+            #[inline(always)]
+            fn raise(self, u: $float) -> $float {
+                u * u
+            }
+        }
+
+        impl Power<$float> for ThreeHalvesPower {
+            #[inline(always)]
+            fn share(self, ratio: $float) -> $float {
+                ratio * ratio
+            }
+            #[inline(always)]
+            fn raise(self, u: $float) -> $float {
+                u * u.sqrt()
+            }
+        }
+
+        impl Power<$float> for FiveQuartersPower {
+            #[inline(always)]
+            fn share(self, ratio: $float) -> $float {
+                let square = ratio * ratio;
+                square * square
+            }
+            #[inline(always)]
+            fn raise(self, u: $float) -> $float {
+                u * u.sqrt().sqrt()
+            }
+        }
+
+        impl Power<$float> for AnyPower {
+            fn share(self, ratio: $float) -> $float {
+                libm::pow(f64::from(ratio), self.exponent) as $float
+            }
+            fn raise(self, u: $float) -> $float {
+                libm::pow(f64::from(u), self.m) as $float
+            }
+        }
+    };
+}
+
+powers!(f32);
+powers!(f64);
