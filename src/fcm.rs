@@ -110,8 +110,8 @@ impl Fcm {
         }
         self.weight.resize(padded, 0.0);
 
-        let mean = |sum: DVec3| sum / n.max(1) as f64;
-        self.origin = mean(points.iter().map(|p| p.as_dvec3()).sum());
+        let sum: DVec3 = points.iter().map(|p| p.as_dvec3()).sum();
+        self.origin = sum / n.max(1) as f64;
         let (forward, back) = norm_transform(norm, points, self.origin);
         self.back = back;
         for (axis, x) in self.x.iter_mut().enumerate() {
