@@ -44,6 +44,9 @@ pub mod fcm;
 pub mod features;
 pub mod octree;
 
+// Beside the pipeline: solids with a known surface and their simulated scans.
+pub mod samples;
+
 pub use cloud::Cloud;
 pub use error::{Error, Result};
 pub use params::{ReduceParams, SurfaceParams};
