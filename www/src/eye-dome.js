@@ -1,0 +1,79 @@
+import { DepthTexture, NearestFilter, ShaderMaterial, UnsignedIntType, WebGLRenderTarget } from 'three';
+import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+
+/**
+ * Eye-dome lighting (Boucheny, 2009): a point that lies behind its neighbours on the screen gets darker, by
+ * how far behind in log depth. It gives shape to clouds without normals, for one pass over the screen.
+ */
+export class EyeDome {
+  #target = new WebGLRenderTarget(1, 1, {
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthTexture: new DepthTexture(1, 1, UnsignedIntType),
+  });
+
+  #material = new ShaderMaterial({
+    uniforms: {
+      colors: { value: this.#target.texture },
+      depths: { value: this.#target.depthTexture },
+      near: { value: 0 },
+      far: { value: 1 },
+      reach: { value: 1 },
+    },
+    depthTest: false,
+    depthWrite: false,
+    vertexShader: /* glsl */ `
+      void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }`,
+    fragmentShader: /* glsl */ `
+      uniform sampler2D colors, depths;
+      uniform float near, far, reach;
+      const float STRENGTH = 22.0;
+      const float LIMIT = 0.06;
+
+      float logDepth(ivec2 pixel) {
+        ivec2 size = textureSize(depths, 0);
+        float depth = texelFetch(depths, clamp(pixel, ivec2(0), size - 1), 0).r;
+        return log2(near * far / (far - depth * (far - near)));
+      }
+
+      void main() {
+        ivec2 here = ivec2(gl_FragCoord.xy);
+        vec4 color = texelFetch(colors, here, 0);
+        if (color.a == 0.0) discard;
+        float depth = logDepth(here);
+        float behind = 0.0;
+        for (int k = 0; k < 8; k++) {
+          float angle = 0.785398 * float(k);
+          ivec2 there = here + ivec2(round(reach * vec2(cos(angle), sin(angle))));
+          behind += clamp(depth - logDepth(there), 0.0, LIMIT);
+        }
+        gl_FragColor = vec4(color.rgb * exp(-STRENGTH * behind / 8.0 * 4.0), 1.0);
+      }`,
+  });
+
+  #quad = new FullScreenQuad(this.#material);
+
+  /** @param {number} width @param {number} height  in device pixels */
+  resize(width, height) {
+    this.#target.setSize(width, height);
+  }
+
+  /**
+   * Draws the scene through the pass.
+   * @param {import('three').WebGLRenderer} renderer
+   * @param {import('three').Scene} scene
+   * @param {import('three').PerspectiveCamera} camera
+   */
+  render(renderer, scene, camera) {
+    renderer.setRenderTarget(this.#target);
+    renderer.clear();
+    renderer.render(scene, camera);
+    renderer.setRenderTarget(null);
+    const { uniforms } = this.#material;
+    uniforms.near.value = camera.near;
+    uniforms.far.value = camera.far;
+    uniforms.reach.value = 1.5 * renderer.getPixelRatio();
+    renderer.clear();
+    this.#quad.render(renderer);
+  }
+}

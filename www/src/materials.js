@@ -1,0 +1,65 @@
+import { Color, DoubleSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
+import { studioMatcap } from './matcap.js';
+
+/**
+ * The mesh: a matcap, tinted by the theme or by the scan's own colours. Inner sides are darker and warmer,
+ * so that a hole or a triangle the wrong way round can be seen.
+ * @param {{ colored: boolean }} options
+ */
+export function meshMaterial({ colored }) {
+  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side: DoubleSide, vertexColors: colored });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      '#include <opaque_fragment>',
+      `if (!gl_FrontFacing) outgoingLight *= vec3(0.62, 0.46, 0.4);
+      #include <opaque_fragment>`,
+    );
+  };
+  return material;
+}
+
+/**
+ * Points as round dots whose size follows the distance. With normals they are shaded; without, the depth
+ * pass (eye-dome.js) gives them shape. Colours go through as the sRGB values that they are.
+ * @param {{ colored: boolean, shaded: boolean, diameter: number }} options  diameter in the viewer's frame
+ */
+export function pointMaterial({ colored, shaded, diameter }) {
+  return new ShaderMaterial({
+    defines: { ...(colored && { COLORED: '' }), ...(shaded && { SHADED: '' }) },
+    uniforms: {
+      tint: { value: new Color() },
+      diameter: { value: diameter },
+      pixelsPerUnit: { value: 1 },
+      smallest: { value: 1 },
+    },
+    vertexShader: /* glsl */ `
+      uniform vec3 tint;
+      uniform float diameter, pixelsPerUnit, smallest;
+      varying vec3 shown;
+      #ifdef COLORED
+        attribute vec3 color;
+      #endif
+      void main() {
+        vec4 eye = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * eye;
+        gl_PointSize = clamp(diameter * pixelsPerUnit / -eye.z, smallest, 96.0);
+        #ifdef COLORED
+          shown = color;
+        #else
+          shown = tint;
+        #endif
+        #ifdef SHADED
+          vec3 n = normalize(normalMatrix * normal);
+          float light = 0.5 + 0.5 * dot(n, normalize(vec3(-0.45, 0.75, 0.55)));
+          shown *= 0.55 + 0.6 * light;
+        #endif
+      }`,
+    fragmentShader: /* glsl */ `
+      varying vec3 shown;
+      void main() {
+        vec2 offset = gl_PointCoord - 0.5;
+        if (dot(offset, offset) > 0.25) discard;
+        gl_FragColor = vec4(shown, 1.0);
+      }`,
+  });
+}

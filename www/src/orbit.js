@@ -1,0 +1,151 @@
+import { MathUtils, Quaternion, Spherical, Vector3 } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+/** First look at a scan: from the front, a little from the right and above. */
+const FIRST_LOOK = new Vector3(0.55, 0.38, 1).normalize();
+const FIT_MARGIN = 1.06;
+const FIT_MS = 420;
+/** The ways to stand a scan upright, in the order in which the button goes through them. */
+const UPS = [
+  { name: 'Y', axis: new Vector3(0, 1, 0) },
+  { name: 'Z', axis: new Vector3(0, 0, 1) },
+  { name: '−Y', axis: new Vector3(0, -1, 0) },
+  { name: '−Z', axis: new Vector3(0, 0, -1) },
+  { name: 'X', axis: new Vector3(1, 0, 0) },
+  { name: '−X', axis: new Vector3(-1, 0, 0) },
+];
+
+/** A camera move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, start: number }} Flight */
+
+/** How the person moves around the scan: pointer, keys, and the moves of the buttons. */
+export class Orbit {
+  #camera;
+  #root;
+  #changed;
+  #controls;
+  #calm = matchMedia('(prefers-reduced-motion: reduce)');
+  #up = 0;
+  /** @type {Float32Array} a few points of the scan, in the viewer's frame */
+  #outline = new Float32Array();
+  /** @type {Flight | null} */
+  #flight = null;
+
+  /**
+   * @param {import('three').PerspectiveCamera} camera
+   * @param {import('three').Object3D} root  holds the scan; it is turned to stand upright
+   * @param {HTMLElement} element  takes the pointer
+   * @param {() => void} changed  asks for a new picture
+   */
+  constructor(camera, root, element, changed) {
+    this.#camera = camera;
+    this.#root = root;
+    this.#changed = changed;
+    this.#controls = new OrbitControls(camera, element);
+    this.#controls.minDistance = 0.02;
+    this.#controls.maxDistance = 12;
+    this.#controls.zoomSpeed = 1.4;
+    this.#controls.addEventListener('start', () => (this.#flight = null));
+    this.#controls.addEventListener('change', changed);
+    const follow = () => (this.#controls.enableDamping = !this.#calm.matches);
+    this.#calm.addEventListener('change', follow);
+    follow();
+    camera.position.copy(FIRST_LOOK).multiplyScalar(2);
+  }
+
+  /** Takes a new scan: its points, and which axis is most likely up. */
+  frame(/** @type {Float32Array} */ points, /** @type {'Y' | 'Z'} */ up) {
+    const stride = 3 * Math.max(1, Math.floor(points.length / 3 / 4096));
+    const picked = [];
+    for (let i = 0; i < points.length; i += stride) picked.push(points[i], points[i + 1], points[i + 2]);
+    this.#outline = Float32Array.from(picked);
+    this.#stand(UPS.findIndex(({ name }) => name === up));
+    this.#camera.position.copy(FIRST_LOOK);
+    this.#controls.target.set(0, 0, 0);
+    this.fit({ animated: false });
+  }
+
+  /** Stands the scan on its next side and says which axis is up now. */
+  nextUp() {
+    this.#stand((this.#up + 1) % UPS.length);
+    this.fit();
+    return UPS[this.#up].name;
+  }
+
+  /** Moves the camera along its line of sight until the whole scan is seen, centred. */
+  fit({ animated = true } = {}) {
+    const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
+    const to = new Spherical().setFromVector3(direction.multiplyScalar(this.#distanceToFit(direction)));
+    if (!animated || this.#calm.matches) return this.#place(to, new Vector3());
+    const from = new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#controls.target));
+    this.#flight = { from, to, target: this.#controls.target.clone(), start: performance.now() };
+    this.#changed();
+  }
+
+  /** Turns around the scan. @param {number} right @param {number} over  radians */
+  turn(right, over) {
+    const place = this.#spherical();
+    place.theta += right;
+    place.phi = MathUtils.clamp(place.phi - over, 0.01, Math.PI - 0.01);
+    this.#place(place, this.#controls.target);
+  }
+
+  /** @param {number} factor  under 1 comes nearer */
+  zoom(factor) {
+    const place = this.#spherical();
+    place.radius = MathUtils.clamp(place.radius * factor, this.#controls.minDistance, this.#controls.maxDistance);
+    this.#place(place, this.#controls.target);
+  }
+
+  /** Goes on with a movement under way; called once before each picture. */
+  update() {
+    if (this.#flight) this.#fly(this.#flight);
+    this.#controls.update();
+    const distance = this.#camera.position.length();
+    this.#camera.near = Math.max(distance * 0.005, distance - 1);
+    this.#camera.far = distance + 1;
+    this.#camera.updateProjectionMatrix();
+  }
+
+  #fly(/** @type {Flight} */ { from, to, target, start }) {
+    const t = Math.min(1, (performance.now() - start) / FIT_MS);
+    const eased = 1 - (1 - t) ** 3;
+    const place = new Spherical(MathUtils.lerp(from.radius, to.radius, eased), to.phi, to.theta);
+    if (t === 1) this.#flight = null;
+    this.#place(place, target.clone().multiplyScalar(1 - eased));
+  }
+
+  #spherical() {
+    this.#flight = null;
+    return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#controls.target));
+  }
+
+  #place(/** @type {Spherical} */ place, /** @type {Vector3} */ target) {
+    this.#controls.target.copy(target);
+    this.#camera.position.setFromSpherical(place).add(target);
+    this.#camera.lookAt(target);
+    this.#changed();
+  }
+
+  #stand(/** @type {number} */ up) {
+    this.#up = up;
+    this.#root.quaternion.setFromUnitVectors(UPS[up].axis, new Vector3(0, 1, 0));
+    this.#root.updateMatrixWorld();
+  }
+
+  /** The smallest distance along `direction` from which every point of the outline is inside the picture. */
+  #distanceToFit(/** @type {Vector3} */ direction) {
+    const tanY = Math.tan(MathUtils.degToRad(this.#camera.fov) / 2) / FIT_MARGIN;
+    const tanX = tanY * this.#camera.aspect;
+    const look = this.#camera.clone();
+    look.position.copy(direction);
+    look.lookAt(0, 0, 0);
+    const toEye = look.quaternion.invert().multiply(new Quaternion().copy(this.#root.quaternion));
+    const point = new Vector3();
+    let distance = this.#controls.minDistance;
+    for (let i = 0; i < this.#outline.length; i += 3) {
+      point.fromArray(this.#outline, i).applyQuaternion(toEye);
+      distance = Math.max(distance, point.z + Math.max(Math.abs(point.x) / tanX, Math.abs(point.y) / tanY));
+    }
+    return distance;
+  }
+}

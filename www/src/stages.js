@@ -1,0 +1,14 @@
+/** The engine's stages, in the words of the page. */
+const WORDS = /** @type {Record<string, string>} */ ({
+  octree: 'Sorting the points',
+  features: 'Measuring curvature and noise',
+  cluster: 'Choosing the points to keep',
+  place: 'Placing them on the surface',
+  cells: 'Dividing the surface into patches',
+  fit: 'Fitting the patches',
+  orient: 'Finding out what is inside',
+  extract: 'Weaving the triangles',
+  report: 'Measuring the result',
+});
+
+export const stageWords = (/** @type {string} */ stage) => WORDS[stage] ?? stage;
