@@ -43,6 +43,7 @@ pub mod cloud;
 pub mod fcm;
 pub mod features;
 pub mod octree;
+pub mod report;
 
 // Beside the pipeline: solids with a known surface and their simulated scans.
 pub mod samples;
