@@ -30,19 +30,23 @@
 
 // Base: knows no stage.
 pub mod error;
-pub mod kernel;
-pub mod linalg;
-pub mod par;
 pub mod params;
-pub mod power;
 pub mod progress;
+pub mod par;
 pub mod rng;
+pub mod power;
+pub mod linalg;
+pub mod kernel;
 
 // Stages, in the order in which data flows through them.
 pub mod cloud;
-pub mod fcm;
-pub mod features;
 pub mod octree;
+pub mod features;
+pub mod fcm;
+pub mod cells;
+pub mod fit;
+pub mod orient;
+pub mod field;
 pub mod report;
 
 // Beside the pipeline: solids with a known surface and their simulated scans.

@@ -39,15 +39,18 @@ impl Node {
         self.start as usize..self.end as usize
     }
 
-    fn is_leaf(&self) -> bool {
+    /// Whether its points are not divided further.
+    pub fn is_leaf(&self) -> bool {
         self.children == 0
     }
 
-    fn child_ids(&self) -> Range<usize> {
+    /// Its children in [`Octree::nodes`].
+    pub fn child_ids(&self) -> Range<usize> {
         self.first_child as usize..self.first_child as usize + self.children as usize
     }
 
-    fn distance2(&self, q: Vec3) -> f32 {
+    /// Squared distance to its tight box.
+    pub fn distance2(&self, q: Vec3) -> f32 {
         (self.lo - q)
             .max(q - self.hi)
             .max(Vec3::ZERO)
@@ -240,8 +243,8 @@ impl Octree {
     /// All points within `r` of `q`, by index; `out` is cleared.
     pub fn within(&self, q: Vec3, r: f32, out: &mut Vec<Neighbor>) {
         out.clear();
-        self.visit_boxes(
-            |node| node.distance2(q) <= r * r,
+        self.visit(
+            |_, node| node.distance2(q) <= r * r,
             |i| {
                 let distance2 = self.points[i].distance_squared(q);
                 if distance2 <= r * r {
@@ -254,14 +257,15 @@ impl Octree {
         );
     }
 
-    /// Calls `visit` with every point of every leaf all of whose ancestors and itself pass `enter`, by index.
-    pub fn visit_boxes(&self, enter: impl Fn(&Node) -> bool, mut visit: impl FnMut(usize)) {
+    /// Calls `visit` with every point of every leaf that `enter` lets pass with all its ancestors, by index; `enter` gets
+    /// a node and its place in [`Octree::nodes`].
+    pub fn visit(&self, enter: impl Fn(usize, &Node) -> bool, mut visit: impl FnMut(usize)) {
         // At most 7 siblings wait on each of the 21 levels and of the at most 32 halvings of equal keys.
         let mut stack = Vec::with_capacity(64);
         stack.push(0);
         while let Some(id) = stack.pop() {
             let node = &self.nodes[id];
-            if !enter(node) {
+            if !enter(id, node) {
                 continue;
             }
             if node.is_leaf() {

@@ -29,7 +29,11 @@ impl DistanceStats {
             max = max.max(d.abs());
         }
         let n = n.max(1) as f64;
-        DistanceStats { mean: sum / n, rms: (squares / n).sqrt(), max }
+        DistanceStats {
+            mean: sum / n,
+            rms: (squares / n).sqrt(),
+            max,
+        }
     }
 }
 
@@ -165,7 +169,10 @@ impl Topology {
 /// Counts what [`Topology`] holds. Vertices that no triangle names are ignored; indices must be under `vertex_count`.
 pub fn topology(triangles: &[[u32; 3]], vertex_count: usize) -> Topology {
     let mut t = Topology {
-        degenerate: triangles.iter().filter(|[a, b, c]| a == b || b == c || c == a).count(),
+        degenerate: triangles
+            .iter()
+            .filter(|[a, b, c]| a == b || b == c || c == a)
+            .count(),
         duplicate: count_duplicates(triangles, vertex_count),
         ..Topology::default()
     };
@@ -194,8 +201,14 @@ pub fn topology(triangles: &[[u32; 3]], vertex_count: usize) -> Topology {
             _ => t.non_manifold_edges += 1,
         }
         for other in &edge[1..] {
-            corners.join(first.corner_at(lo, triangles), other.corner_at(lo, triangles));
-            corners.join(first.corner_at(hi, triangles), other.corner_at(hi, triangles));
+            corners.join(
+                first.corner_at(lo, triangles),
+                other.corner_at(lo, triangles),
+            );
+            corners.join(
+                first.corner_at(hi, triangles),
+                other.corner_at(hi, triangles),
+            );
         }
     }
     let mut fans = vec![0u32; vertex_count];
@@ -243,7 +256,10 @@ impl HalfEdge {
     /// The corner of this triangle at vertex `v`.
     fn corner_at(&self, v: u32, triangles: &[[u32; 3]]) -> u32 {
         let t = self.triangle;
-        let k = triangles[t as usize].iter().position(|&w| w == v).unwrap_or(0);
+        let k = triangles[t as usize]
+            .iter()
+            .position(|&w| w == v)
+            .unwrap_or(0);
         3 * t + k as u32
     }
 }
@@ -270,7 +286,12 @@ impl EdgeGroups {
             start[v + 1] += start[v];
         }
         let mut next = start.clone();
-        let none = HalfEdge { lo: 0, hi: 0, triangle: 0, forward: false };
+        let none = HalfEdge {
+            lo: 0,
+            hi: 0,
+            triangle: 0,
+            forward: false,
+        };
         let mut sorted = vec![none; 3 * triangles.len()];
         for e in half_edges() {
             sorted[next[e.lo as usize] as usize] = e;
@@ -284,7 +305,9 @@ impl EdgeGroups {
 
     /// The half-edges of one edge after the other; an edge from a vertex to itself is left out.
     fn iter(&self) -> impl Iterator<Item = &[HalfEdge]> {
-        self.0.chunk_by(|a, b| (a.lo, a.hi) == (b.lo, b.hi)).filter(|g| g[0].lo != g[0].hi)
+        self.0
+            .chunk_by(|a, b| (a.lo, a.hi) == (b.lo, b.hi))
+            .filter(|g| g[0].lo != g[0].hi)
     }
 }
 

@@ -1,0 +1,294 @@
+//! Sub-domains with overlap: an octree cell's points and those around them, one sheet of the surface each.
+//!
+//! A sub-domain has one sign, so it must hold one sheet: it grows along the neighbour graph only over *compatible* pairs
+//! (normals within 70°, offset along the normals small against the distance). Points of a cell that cannot be reached
+//! that way belong to another sheet and make a sub-domain of their own.
+
+use crate::error::Result;
+use crate::octree::{Neighbor, Octree};
+use crate::par;
+use crate::progress::{Progress, Stage};
+use glam::Vec3;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// The points that surfaces are fitted to; all arrays in the tree's order.
+#[derive(Debug, Clone)]
+pub struct Sites {
+    /// Positions in the unit frame and their neighbours.
+    pub tree: Octree,
+    /// Unit normals; of arbitrary sign unless `oriented`. Zero where there is none.
+    pub normals: Vec<Vec3>,
+    /// Distance of neighbours on the surface.
+    pub spacing: Vec<f32>,
+    /// Standard deviation of the noise across the surface.
+    pub noise: f32,
+    /// Whether the normals' signs are the caller's and to be kept.
+    pub oriented: bool,
+}
+
+/// A sub-domain Ω_i.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subdomain {
+    /// Its sites: first the `core` ones that only it holds as core, then those shared with others.
+    pub support: Vec<u32>,
+    /// How many of `support` are its own.
+    pub core: usize,
+    /// Normals of the support; signs agree within the sub-domain.
+    pub normals: Vec<Vec3>,
+}
+
+/// Most core sites of a sub-domain. A cell of 10 to 16 with half as many around it balances the number of fits against
+/// their cubic cost.
+const CORE: usize = 16;
+/// Sites shared with others, without noise and at a noise of half a spacing and more.
+const OVERLAP: [f32; 2] = [18.0, 34.0];
+/// Neighbours in the graph.
+const GRAPH: usize = 10;
+/// Cosine of 70°, the largest turn between compatible normals.
+const MIN_COSINE: f32 = 0.342;
+/// Largest offset along the normal against the distance; sin 45° and a margin, so that a right-angled crease connects.
+const MAX_SLOPE: f32 = 0.75;
+/// Sites closer than this times their spacing are one centre: eq. 11 would be singular.
+const COINCIDENT: f32 = 0.02;
+
+/// The neighbour graph of the sites, [`GRAPH`] a site at most.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    starts: Vec<u32>,
+    targets: Vec<u32>,
+}
+
+impl Graph {
+    /// Nearest neighbours of every site that has a normal.
+    fn build(sites: &Sites, progress: &mut dyn Progress) -> Result<Graph> {
+        let tree = &sites.tree;
+        let lists = par::map_progress(
+            tree.points.len(),
+            2.0,
+            (Stage::Cells, progress),
+            Vec::new,
+            |i, found: &mut Vec<Neighbor>| {
+                tree.knn(tree.points[i], GRAPH + 1, found);
+                found
+                    .iter()
+                    .map(|n| n.index)
+                    .filter(|&j| j != i as u32)
+                    .collect::<Vec<_>>()
+            },
+        )?;
+        let mut graph = Graph {
+            starts: vec![0],
+            targets: Vec::with_capacity(lists.len() * GRAPH),
+        };
+        for list in lists {
+            graph.targets.extend(list);
+            graph.starts.push(graph.targets.len() as u32);
+        }
+        Ok(graph)
+    }
+
+    /// The neighbours of site `i`, nearest first.
+    pub fn of(&self, i: u32) -> &[u32] {
+        &self.targets[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
+    }
+}
+
+/// All sub-domains, in Morton order of their cells, and the graph they grew on.
+#[derive(Debug, Clone)]
+pub struct Cells {
+    /// Every site with a normal is core of exactly one.
+    pub subdomains: Vec<Subdomain>,
+    /// Who is next to whom.
+    pub graph: Graph,
+}
+
+impl Cells {
+    /// Divides the sites. Cost: one k-nearest query a site.
+    pub fn divide(sites: &Sites, progress: &mut dyn Progress) -> Result<Cells> {
+        let graph = Graph::build(sites, progress)?;
+        let ranges = sites.tree.cut(|node| node.range().len() <= CORE);
+        let n = sites.tree.points.len();
+        let lists = par::map_progress(
+            ranges.len(),
+            30.0,
+            (Stage::Cells, progress),
+            || Growth::new(n),
+            |i, growth| {
+                let cell: Vec<u32> = ranges[i].clone().map(|i| i as u32).collect();
+                growth.divide(sites, &graph, &cell)
+            },
+        )?;
+        Ok(Cells {
+            subdomains: lists.into_iter().flatten().collect(),
+            graph,
+        })
+    }
+
+    /// Cuts a sub-domain in two along the longest axis of its core and grows both again; the core must have at least
+    /// two sites.
+    pub fn split(
+        &self,
+        sites: &Sites,
+        subdomain: &Subdomain,
+        growth: &mut Growth,
+    ) -> Vec<Subdomain> {
+        let mut core = subdomain.support[..subdomain.core].to_vec();
+        let position = |i: &u32| sites.tree.points[*i as usize];
+        let lo = core
+            .iter()
+            .map(position)
+            .reduce(Vec3::min)
+            .unwrap_or_default();
+        let hi = core
+            .iter()
+            .map(position)
+            .reduce(Vec3::max)
+            .unwrap_or_default();
+        let axis = (hi - lo).max_position();
+        core.sort_by(|a, b| {
+            position(a)[axis]
+                .total_cmp(&position(b)[axis])
+                .then(a.cmp(b))
+        });
+        let (low, high) = core.split_at(core.len() / 2);
+        [low, high]
+            .into_iter()
+            .flat_map(|half| growth.divide(sites, &self.graph, half))
+            .collect()
+    }
+}
+
+/// Whether two sites lie on the same sheet.
+fn compatible(sites: &Sites, i: u32, j: u32) -> bool {
+    let (i, j) = (i as usize, j as usize);
+    let (a, b) = (sites.normals[i], sites.normals[j]);
+    let d = sites.tree.points[j] - sites.tree.points[i];
+    let allowed = MAX_SLOPE * d.length() + 2.0 * sites.noise;
+    let cosine = if sites.oriented {
+        a.dot(b)
+    } else {
+        a.dot(b).abs()
+    };
+    cosine >= MIN_COSINE && a.dot(d).abs() <= allowed && b.dot(d).abs() <= allowed
+}
+
+/// A step of growth: cost, site, and the site it was reached from. Costs are non-negative floats as ordered bits.
+type Step = Reverse<(u32, u32, u32)>;
+
+/// Scratch of one worker that grows sub-domains.
+#[derive(Debug)]
+pub struct Growth {
+    /// 1 + place in the support, 0 when not in it.
+    place: Vec<u32>,
+    in_cell: Vec<bool>,
+    heap: BinaryHeap<Step>,
+}
+
+impl Growth {
+    /// For `n` sites.
+    pub fn new(n: usize) -> Growth {
+        Growth {
+            place: vec![0; n],
+            in_cell: vec![false; n],
+            heap: BinaryHeap::new(),
+        }
+    }
+
+    /// The sub-domains of the sites of one cell.
+    fn divide(&mut self, sites: &Sites, graph: &Graph, cell: &[u32]) -> Vec<Subdomain> {
+        let usable = |i: u32| sites.normals[i as usize] != Vec3::ZERO;
+        for &i in cell {
+            self.in_cell[i as usize] = usable(i);
+        }
+        let mut out = Vec::new();
+        for &seed in cell {
+            if self.in_cell[seed as usize] {
+                let mut s = Subdomain {
+                    support: Vec::new(),
+                    core: 0,
+                    normals: Vec::new(),
+                };
+                self.grow_core(sites, graph, seed, &mut s);
+                self.grow_overlap(sites, graph, &mut s);
+                s.support.iter().for_each(|&i| self.place[i as usize] = 0);
+                out.push(s);
+            }
+        }
+        out
+    }
+
+    /// Takes `j`, its normal turned to agree with that of `from`.
+    fn take(&mut self, sites: &Sites, j: u32, from: u32, s: &mut Subdomain) {
+        let normal = sites.normals[j as usize];
+        let toward = match self.place[from as usize] {
+            0 => normal,
+            place => s.normals[place as usize - 1],
+        };
+        s.support.push(j);
+        s.normals.push(if toward.dot(normal) < 0.0 {
+            -normal
+        } else {
+            normal
+        });
+        self.place[j as usize] = s.support.len() as u32;
+    }
+
+    /// The part of the cell that is reached from `seed`, by the smallest turns of the normal first (Prim's algorithm).
+    fn grow_core(&mut self, sites: &Sites, graph: &Graph, seed: u32, s: &mut Subdomain) {
+        self.heap.push(Reverse((0, seed, seed)));
+        while let Some(Reverse((_, j, from))) = self.heap.pop() {
+            if !self.in_cell[j as usize] {
+                continue;
+            }
+            self.in_cell[j as usize] = false;
+            self.take(sites, j, from, s);
+            for &k in graph.of(j) {
+                if self.in_cell[k as usize] && compatible(sites, j, k) {
+                    let turn = 1.0
+                        - sites.normals[j as usize]
+                            .dot(sites.normals[k as usize])
+                            .abs();
+                    self.heap.push(Reverse((turn.max(0.0).to_bits(), k, j)));
+                }
+            }
+        }
+        s.core = s.support.len();
+    }
+
+    /// The sites around the core, nearest first, that are reached over compatible pairs.
+    fn grow_overlap(&mut self, sites: &Sites, graph: &Graph, s: &mut Subdomain) {
+        let points = &sites.tree.points;
+        let center = s.support.iter().map(|&i| points[i as usize]).sum::<Vec3>() / s.core as f32;
+        let spacing = sites.spacing[s.support[0] as usize];
+        let relative = (2.0 * sites.noise / spacing.max(f32::MIN_POSITIVE)).min(1.0);
+        let wanted = s.core + (OVERLAP[0] + relative * (OVERLAP[1] - OVERLAP[0])) as usize;
+        let mut next = 0;
+        loop {
+            while next < s.support.len() {
+                let i = s.support[next];
+                for &k in graph.of(i) {
+                    let usable =
+                        self.place[k as usize] == 0 && sites.normals[k as usize] != Vec3::ZERO;
+                    if usable && compatible(sites, i, k) {
+                        let cost = points[k as usize].distance_squared(center);
+                        self.heap.push(Reverse((cost.to_bits(), k, i)));
+                    }
+                }
+                next += 1;
+            }
+            match self.heap.pop() {
+                Some(Reverse((_, k, from))) if s.support.len() < wanted => {
+                    let near = (COINCIDENT * spacing).powi(2);
+                    let apart =
+                        |&i: &u32| points[i as usize].distance_squared(points[k as usize]) > near;
+                    if self.place[k as usize] == 0 && s.support.iter().all(apart) {
+                        self.take(sites, k, from, s);
+                    }
+                }
+                _ => break,
+            }
+        }
+        self.heap.clear();
+    }
+}

@@ -1,0 +1,370 @@
+//! One local implicit function a sub-domain: radial basis functions and a linear polynomial (section 4.1, eq. 9-11).
+//!
+//! f(x) = Σ w_i φ(|x − c_i|) + λ0 + λ1 x + λ2 y + λ3 z (eq. 9, 10) with f = 0 at the sites and f = ±d at offset points
+//! along the normal; the weights are orthogonal to linear polynomials (the lower rows of eq. 11). The offset points
+//! c_i are centres too. A ridge on the diagonal smooths. The system is solved by LU.
+//!
+//! Every function is right up to its sign: f and −f fit the sites equally well, and [`crate::orient`] chooses.
+
+use crate::cells::{Cells, Growth, Sites, Subdomain};
+use crate::error::Result;
+use crate::kernel::phi;
+use crate::octree::Octree;
+use crate::par;
+use crate::params::{Kernel, Smoothing, SurfaceParams};
+use crate::progress::{Progress, Stage};
+use glam::Vec3;
+use nalgebra::{DMatrix, DVector};
+
+/// A fitted function f_i. Evaluated in single precision and in coordinates of its sub-domain, four centres at a time.
+#[derive(Debug, Clone)]
+pub struct LocalFit {
+    kernel: Kernel,
+    center: Vec3,
+    radius: f32,
+    /// x, y, z and weight of four centres; weight 0 where there is none.
+    centers: Vec<[[f32; 4]; 4]>,
+    /// λ0 … λ3 of eq. 10.
+    linear: [f32; 4],
+}
+
+impl LocalFit {
+    /// f(x) in lengths of the unit frame, and its gradient (about unit length near the surface).
+    pub fn evaluate(&self, x: Vec3) -> (f32, Vec3) {
+        let q = (x - self.center) / self.radius;
+        let mut value = [0.0f32; 4];
+        let mut gradient = [[0.0f32; 4]; 3];
+        match self.kernel {
+            Kernel::Triharmonic => {
+                for [cx, cy, cz, w] in &self.centers {
+                    for l in 0..4 {
+                        let (dx, dy, dz) = (q.x - cx[l], q.y - cy[l], q.z - cz[l]);
+                        let r2 = dx * dx + dy * dy + dz * dz;
+                        let wr = w[l] * r2.sqrt();
+                        value[l] += wr * r2;
+                        gradient[0][l] += wr * dx;
+                        gradient[1][l] += wr * dy;
+                        gradient[2][l] += wr * dz;
+                    }
+                }
+                gradient.iter_mut().flatten().for_each(|g| *g *= 3.0);
+            }
+            kernel => {
+                for [cx, cy, cz, w] in &self.centers {
+                    for l in 0..4 {
+                        let (dx, dy, dz) = (q.x - cx[l], q.y - cy[l], q.z - cz[l]);
+                        let (p, slope) = phi(kernel, (dx * dx + dy * dy + dz * dz) as f64);
+                        let slope = w[l] * slope as f32;
+                        value[l] += w[l] * p as f32;
+                        gradient[0][l] += slope * dx;
+                        gradient[1][l] += slope * dy;
+                        gradient[2][l] += slope * dz;
+                    }
+                }
+            }
+        }
+        let sum = |v: [f32; 4]| (v[0] + v[1]) + (v[2] + v[3]);
+        let [l0, l1, l2, l3] = self.linear;
+        let linear = Vec3::new(l1, l2, l3);
+        let gradient = Vec3::from_array(gradient.map(sum)) + linear;
+        ((sum(value) + l0 + linear.dot(q)) * self.radius, gradient)
+    }
+
+    /// First-order distance |f|/|∇f| of a point to f = 0.
+    pub fn distance(&self, x: Vec3) -> f32 {
+        let (value, gradient) = self.evaluate(x);
+        value.abs() / gradient.length().max(1e-3)
+    }
+}
+
+/// What the fit of all sub-domains gave.
+#[derive(Debug, Clone)]
+pub struct Fits {
+    /// The sub-domains, those that were refined in place of what they were cut from.
+    pub subdomains: Vec<Subdomain>,
+    /// One function a sub-domain.
+    pub functions: Vec<LocalFit>,
+    /// How many sub-domains were cut.
+    pub refinements: usize,
+    /// Distances of the input points to the function of their sub-domain.
+    pub residuals: Vec<f32>,
+}
+
+/// Offsets d along the normal, in spacings: without noise and at a noise of half a spacing and more.
+const OFFSET: [f32; 2] = [0.6, 1.5];
+/// How often a sub-domain may be cut.
+const MAX_CUTS: usize = 2;
+/// Ridges tried in turn until the residual is the noise, in units of φ at one spacing.
+const RIDGES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0];
+
+/// Fits every sub-domain and refines those that miss the accuracy at the `input` points.
+///
+/// A sub-domain is cut in two and fitted again when the rms distance of the input points nearest to its core exceeds
+/// `accuracy` and what the noise explains (section 5: "computed and refined until desired accuracy").
+pub fn fit(
+    cells: Cells,
+    sites: &Sites,
+    input: &Octree,
+    input_noise: f32,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Fits> {
+    let fitting = Fitting {
+        cells: &cells,
+        sites,
+        input,
+        owned: input_of_sites(sites, input),
+        allowed: (params.accuracy as f32).max(1.25 * input_noise),
+        params,
+    };
+    let done = par::map_progress(
+        cells.subdomains.len(),
+        150.0,
+        (Stage::Fit, progress),
+        || Growth::new(sites.tree.points.len()),
+        |i, growth| {
+            let mut out = Vec::new();
+            fitting.refine(cells.subdomains[i].clone(), 0, growth, &mut out);
+            out
+        },
+    )?;
+    let mut fits = Fits {
+        subdomains: Vec::new(),
+        functions: Vec::new(),
+        refinements: 0,
+        residuals: vec![0.0; input.points.len()],
+    };
+    for refined in done {
+        fits.refinements += refined.len().saturating_sub(1);
+        for (subdomain, function, residuals) in refined {
+            for (i, r) in residuals {
+                fits.residuals[i as usize] = r;
+            }
+            fits.subdomains.push(subdomain);
+            fits.functions.push(function);
+        }
+    }
+    Ok(fits)
+}
+
+/// A fitted sub-domain and the residuals of its input points.
+type Refined = (Subdomain, LocalFit, Vec<(u32, f32)>);
+
+/// What the refinement of every sub-domain reads.
+struct Fitting<'a> {
+    cells: &'a Cells,
+    sites: &'a Sites,
+    input: &'a Octree,
+    /// For every site the input points nearest to it.
+    owned: Vec<Vec<u32>>,
+    /// Largest rms residual that is not refined.
+    allowed: f32,
+    params: &'a SurfaceParams,
+}
+
+impl Fitting<'_> {
+    fn refine(
+        &self,
+        subdomain: Subdomain,
+        cuts: usize,
+        growth: &mut Growth,
+        out: &mut Vec<Refined>,
+    ) {
+        let function = fit_one(&subdomain, self.sites, self.params);
+        let own = subdomain.support[..subdomain.core]
+            .iter()
+            .flat_map(|&i| &self.owned[i as usize]);
+        let residuals: Vec<(u32, f32)> = own
+            .map(|&i| (i, function.distance(self.input.points[i as usize])))
+            .collect();
+        let sum: f64 = residuals.iter().map(|&(_, r)| (r as f64).powi(2)).sum();
+        let rms = (sum / residuals.len().max(1) as f64).sqrt() as f32;
+        if rms <= self.allowed || cuts == MAX_CUTS || subdomain.core < 4 {
+            out.push((subdomain, function, residuals));
+            return;
+        }
+        for half in self.cells.split(self.sites, &subdomain, growth) {
+            self.refine(half, cuts + 1, growth, out);
+        }
+    }
+}
+
+/// For every site the input points nearest to it.
+fn input_of_sites(sites: &Sites, input: &Octree) -> Vec<Vec<u32>> {
+    let nearest = par::map(
+        input.points.len(),
+        || (),
+        |i, _| sites.tree.nearest(input.points[i]).index,
+    );
+    let mut owned = vec![Vec::new(); sites.tree.points.len()];
+    for (i, site) in nearest.into_iter().enumerate() {
+        owned[site as usize].push(i as u32);
+    }
+    owned
+}
+
+/// The function of one sub-domain.
+fn fit_one(subdomain: &Subdomain, sites: &Sites, params: &SurfaceParams) -> LocalFit {
+    let system = System::new(subdomain, sites, params.kernel);
+    let solved = match params.smoothing {
+        Smoothing::Ridge(ridge) => system.solve(ridge),
+        Smoothing::Auto => system.solve_to_noise(sites.noise as f64),
+    };
+    solved.unwrap_or_else(|| system.plane(subdomain))
+}
+
+/// Eq. 11 of one sub-domain, in its own coordinates: origin at the mean of its support, unit its radius.
+struct System {
+    kernel: Kernel,
+    center: Vec3,
+    radius: f32,
+    /// Sites first, then offset points.
+    centers: Vec<[f64; 3]>,
+    /// Wanted values h_i.
+    values: Vec<f64>,
+    sites: usize,
+    /// φ at one spacing.
+    unit_phi: f64,
+}
+
+impl System {
+    fn new(s: &Subdomain, sites: &Sites, kernel: Kernel) -> System {
+        let points = &sites.tree.points;
+        let position = |i: &u32| points[*i as usize];
+        let center = s.support.iter().map(position).sum::<Vec3>() / s.support.len() as f32;
+        let reach = s
+            .support
+            .iter()
+            .map(|i| position(i).distance(center))
+            .fold(0.0, f32::max);
+        let radius = if reach > 0.0 { reach } else { 1.0 };
+        let local = |p: Vec3| ((p - center) / radius).as_dvec3().to_array();
+        let mut centers: Vec<[f64; 3]> = s.support.iter().map(|i| local(position(i))).collect();
+        let mut values = vec![0.0; centers.len()];
+        // Every second site has offset points: the function is smooth at the scale of the spacing.
+        for (&i, &normal) in s.support.iter().zip(&s.normals).step_by(2) {
+            let spacing = sites.spacing[i as usize];
+            let relative = (2.0 * sites.noise / spacing.max(f32::MIN_POSITIVE)).min(1.0);
+            let wanted = spacing * (OFFSET[0] + relative * (OFFSET[1] - OFFSET[0]));
+            for sign in [1.0, -1.0] {
+                if let Some(d) = free_offset(sites, s, i, normal * sign, wanted) {
+                    centers.push(local(position(&i) + normal * (sign * d)));
+                    values.push((sign * d / radius) as f64);
+                }
+            }
+        }
+        let spacing = (sites.spacing[s.support[0] as usize] / radius) as f64;
+        let unit_phi = phi(kernel, spacing * spacing).0.abs();
+        System {
+            kernel,
+            center,
+            radius,
+            centers,
+            values,
+            sites: s.support.len(),
+            unit_phi,
+        }
+    }
+
+    /// Eq. 11 with `ridge` on its diagonal; `None` when a pivot vanishes.
+    fn solve(&self, ridge: f64) -> Option<LocalFit> {
+        let k = self.centers.len();
+        if self.sites < 4 {
+            return None;
+        }
+        let mut m = DMatrix::zeros(k + 4, k + 4);
+        for j in 0..k {
+            for i in 0..j {
+                let [a, b] = [self.centers[i], self.centers[j]];
+                let r2 = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2);
+                let value = phi(self.kernel, r2).0;
+                m[(i, j)] = value;
+                m[(j, i)] = value;
+            }
+            m[(j, j)] = ridge * self.unit_phi;
+            for (row, value) in [
+                1.0,
+                self.centers[j][0],
+                self.centers[j][1],
+                self.centers[j][2],
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                m[(k + row, j)] = value;
+                m[(j, k + row)] = value;
+            }
+        }
+        let mut h = DVector::zeros(k + 4);
+        h.rows_mut(0, k).copy_from_slice(&self.values);
+        let solved = m.lu().solve_mut(&mut h);
+        if !solved || !h.iter().all(|w| w.abs() < 1e9) {
+            return None;
+        }
+        Some(self.fitted(&h.as_slice()[..k], [h[k], h[k + 1], h[k + 2], h[k + 3]]))
+    }
+
+    /// The smallest ridge at which the rms value at the sites reaches the noise (Morozov's discrepancy principle).
+    fn solve_to_noise(&self, noise: f64) -> Option<LocalFit> {
+        let mut best = None;
+        for ridge in RIDGES {
+            let Some(f) = self.solve(ridge) else { continue };
+            let residual = self.centers[..self.sites]
+                .iter()
+                .map(|c| {
+                    let p = Vec3::new(c[0] as f32, c[1] as f32, c[2] as f32) * self.radius
+                        + self.center;
+                    (f.evaluate(p).0 as f64).powi(2)
+                })
+                .sum::<f64>();
+            let reached = (residual / self.sites as f64).sqrt() >= noise;
+            best = Some(f);
+            // One ridge of the list is three to ten times the next: a finer choice does not show in the error.
+            if reached || noise < 1e-6 {
+                break;
+            }
+        }
+        best
+    }
+
+    /// The mean plane of the support, for sub-domains that eq. 11 cannot serve.
+    fn plane(&self, s: &Subdomain) -> LocalFit {
+        let n = s
+            .normals
+            .iter()
+            .sum::<Vec3>()
+            .normalize_or_zero()
+            .as_dvec3();
+        self.fitted(&[], [0.0, n.x, n.y, n.z])
+    }
+
+    fn fitted(&self, weights: &[f64], linear: [f64; 4]) -> LocalFit {
+        let mut centers = vec![[[0.0f32; 4]; 4]; weights.len().div_ceil(4)];
+        for (i, (c, &w)) in self.centers.iter().zip(weights).enumerate() {
+            let lanes = &mut centers[i / 4];
+            for (lane, value) in lanes.iter_mut().zip([c[0], c[1], c[2], w]) {
+                lane[i % 4] = value as f32;
+            }
+        }
+        let (kernel, center, radius) = (self.kernel, self.center, self.radius);
+        LocalFit {
+            kernel,
+            center,
+            radius,
+            centers,
+            linear: linear.map(|l| l as f32),
+        }
+    }
+}
+
+/// The largest of d, d/2, d/4 for which the point at distance d along `normal` from site `i` is nearest to a site of
+/// its own sub-domain and really that far from it: offset points never reach another sheet.
+fn free_offset(sites: &Sites, s: &Subdomain, i: u32, normal: Vec3, wanted: f32) -> Option<f32> {
+    let p = sites.tree.points[i as usize];
+    [wanted, 0.5 * wanted, 0.25 * wanted]
+        .into_iter()
+        .find(|&d| {
+            let near = sites.tree.nearest(p + normal * d);
+            s.support.contains(&near.index) && near.distance2.sqrt() >= 0.6 * d
+        })
+}

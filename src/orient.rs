@@ -1,0 +1,560 @@
+//! Which side is out: one sign a sub-domain (section 4.2, Algorithm 1).
+//!
+//! Sub-domains that share sites are joined by an edge whose weight says how well their *fitted functions* agree there:
+//! the mean cosine of the two gradients, −1 to 1, times the share of sites they have in common. Sub-domains that only
+//! touch (across a crease, or two sheets) look at each other instead: both see the other on the same side when both are
+//! oriented alike, be there material or air between them.
+//!
+//! The energy of signs s is E = −Σ w_ab s_a s_b. [`Propagation::Paper`] is Algorithm 1: an advancing front with belief
+//! propagation on local graphs. [`Propagation::Global`] starts from the maximum spanning tree of |w| and then flips
+//! sub-domains and whole branches of the tree while that lowers the energy: a front that is wrong once stays wrong,
+//! a tree can be mended.
+//!
+//! Every connected component then gets the sign that makes its enclosed volume positive; open sheets without a clear
+//! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis).
+
+use crate::cells::{Graph, Sites};
+use crate::error::Result;
+use crate::fit::Fits;
+use crate::par;
+use crate::params::Propagation;
+use crate::progress::{Progress, Stage};
+use glam::{DVec3, Vec3};
+use std::collections::VecDeque;
+
+/// The signs and what they cost.
+#[derive(Debug, Clone)]
+pub struct Signs {
+    /// +1 or −1 for each sub-domain's function.
+    pub signs: Vec<f32>,
+    /// E = −Σ w_ab s_a s_b over all edges, divided by Σ |w|: −1 when all edges agree.
+    pub energy: f64,
+    /// Oriented unit normal of every site; zero where the site belongs to no sub-domain.
+    pub normals: Vec<Vec3>,
+    /// Connected components of the graph of sub-domains.
+    pub components: usize,
+}
+
+/// An edge between sub-domains `a` < `b`; positive weight: same sign.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    a: u32,
+    b: u32,
+    weight: f32,
+}
+
+/// A gradient of one sub-domain's function at one site.
+type Sample = (u32, u32, Vec3);
+
+/// Weight of an edge between sub-domains that share no site, against one of full overlap.
+const TOUCHING: f32 = 0.25;
+
+/// Infers the signs; with `sites.oriented` every sign is +1 already.
+pub fn orient(
+    fits: &Fits,
+    sites: &Sites,
+    graph: &Graph,
+    propagation: Propagation,
+    progress: &mut dyn Progress,
+) -> Result<Signs> {
+    let n = fits.functions.len();
+    let gradients = par::map_progress(
+        n,
+        15.0,
+        (Stage::Orient, progress),
+        || (),
+        |i, _| {
+            let at = |&site: &u32| {
+                fits.functions[i]
+                    .evaluate(sites.tree.points[site as usize])
+                    .1
+                    .normalize_or_zero()
+            };
+            fits.subdomains[i]
+                .support
+                .iter()
+                .map(at)
+                .collect::<Vec<Vec3>>()
+        },
+    )?;
+    let edges = edges(fits, sites, graph, &gradients);
+    let adjacency = Adjacency::new(n, &edges);
+    let mut signs = vec![1.0; n];
+    let mut components = adjacency.components();
+    if !sites.oriented {
+        match propagation {
+            Propagation::Paper => advancing_front(fits, sites, &edges, &adjacency, &mut signs),
+            Propagation::Global => {
+                let forest = Forest::strongest_first(n, &edges);
+                signs.copy_from_slice(&forest.signs);
+                forest.flip_branches(&edges, &mut signs);
+                flip_single(&edges, &adjacency, &mut signs);
+            }
+        }
+        progress.update(Stage::Orient, 0.9)?;
+        for component in &mut components {
+            turn_outward(component, fits, sites, &gradients, &mut signs);
+        }
+    }
+    let normals = site_normals(fits, sites, &gradients, &signs);
+    progress.update(Stage::Orient, 1.0)?;
+    Ok(Signs {
+        energy: energy(&edges, &signs),
+        signs,
+        normals,
+        components: components.len(),
+    })
+}
+
+/// E / Σ |w|.
+fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
+    let total: f64 = edges.iter().map(|e| e.weight.abs() as f64).sum();
+    let sum: f64 = edges
+        .iter()
+        .map(|e| (e.weight * signs[e.a as usize] * signs[e.b as usize]) as f64)
+        .sum();
+    if total > 0.0 { -sum / total } else { -1.0 }
+}
+
+/// All edges, sorted by (a, b).
+fn edges(fits: &Fits, sites: &Sites, graph: &Graph, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
+    let n_sites = sites.tree.points.len();
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut owner = vec![u32::MAX; n_sites];
+    for (s, subdomain) in fits.subdomains.iter().enumerate() {
+        samples.extend(
+            subdomain
+                .support
+                .iter()
+                .zip(&gradients[s])
+                .map(|(&i, &g)| (i, s as u32, g)),
+        );
+        subdomain.support[..subdomain.core]
+            .iter()
+            .for_each(|&i| owner[i as usize] = s as u32);
+    }
+    samples.sort_unstable_by_key(|&(site, s, _)| (site, s));
+    // Pairs that share a site: (a, b, cosine).
+    let mut shared: Vec<(u32, u32, f32)> = Vec::new();
+    for group in samples.chunk_by(|x, y| x.0 == y.0) {
+        for (k, &(_, a, ga)) in group.iter().enumerate() {
+            shared.extend(group[k + 1..].iter().map(|&(_, b, gb)| (a, b, ga.dot(gb))));
+        }
+    }
+    // Pairs that only touch: (a, b, 0), once a neighbouring pair of sites.
+    for i in 0..n_sites as u32 {
+        for &j in graph.of(i) {
+            let (a, b) = (owner[i as usize], owner[j as usize]);
+            if a != b && a != u32::MAX && b != u32::MAX {
+                shared.push((a.min(b), a.max(b), 0.0));
+            }
+        }
+    }
+    shared.sort_unstable_by(|x, y| (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2)));
+    shared
+        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
+        .filter_map(|pair| {
+            let (a, b) = (pair[0].0, pair[0].1);
+            let sum: f32 = pair.iter().map(|p| p.2).sum();
+            let [fewer, common] = [
+                fits.subdomains[a as usize]
+                    .support
+                    .len()
+                    .min(fits.subdomains[b as usize].support.len()),
+                pair.iter().filter(|p| p.2 != 0.0).count(),
+            ];
+            let weight = match common {
+                0 => TOUCHING * mutual_side(fits, sites, a, b),
+                _ => sum / fewer as f32,
+            };
+            (weight != 0.0).then_some(Edge { a, b, weight })
+        })
+        .collect()
+}
+
+/// How two sub-domains that share no site see each other, −1 to 1: positive when each has the other's core on the same
+/// side of its function.
+fn mutual_side(fits: &Fits, sites: &Sites, a: u32, b: u32) -> f32 {
+    let core = |s: u32| {
+        let s = &fits.subdomains[s as usize];
+        s.support[..s.core]
+            .iter()
+            .map(|&i| sites.tree.points[i as usize])
+    };
+    let side = |from: u32, to: u32| {
+        let f = &fits.functions[from as usize];
+        let (mut sum, mut size) = (0.0, 0.0);
+        for p in core(to) {
+            let value = f.evaluate(p).0;
+            sum += value;
+            size += value.abs();
+        }
+        // Sites on both sides say nothing; neither do sites on the function's own sheet.
+        let mean = core(from).sum::<Vec3>() / core(from).count() as f32;
+        let distance: f32 = core(to).map(|p| p.distance(mean)).sum();
+        if size > 0.0 {
+            sum / size * (2.0 * size / distance).min(1.0)
+        } else {
+            0.0
+        }
+    };
+    side(a, b) * side(b, a)
+}
+
+/// Edges by sub-domain.
+struct Adjacency {
+    starts: Vec<u32>,
+    /// Index of the edge and the sub-domain at its other end.
+    targets: Vec<(u32, u32)>,
+}
+
+impl Adjacency {
+    fn new(n: usize, edges: &[Edge]) -> Adjacency {
+        let mut starts = vec![0u32; n + 1];
+        for e in edges {
+            starts[e.a as usize + 1] += 1;
+            starts[e.b as usize + 1] += 1;
+        }
+        for i in 0..n {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut targets = vec![(0, 0); 2 * edges.len()];
+        for (i, e) in edges.iter().enumerate() {
+            for (from, to) in [(e.a, e.b), (e.b, e.a)] {
+                targets[next[from as usize] as usize] = (i as u32, to);
+                next[from as usize] += 1;
+            }
+        }
+        Adjacency { starts, targets }
+    }
+
+    fn of(&self, s: u32) -> &[(u32, u32)] {
+        &self.targets[self.starts[s as usize] as usize..self.starts[s as usize + 1] as usize]
+    }
+
+    /// Connected components, by their first sub-domain.
+    fn components(&self) -> Vec<Vec<u32>> {
+        let mut seen = vec![false; self.starts.len() - 1];
+        let mut out = Vec::new();
+        for start in 0..seen.len() as u32 {
+            if seen[start as usize] {
+                continue;
+            }
+            seen[start as usize] = true;
+            let mut members = vec![start];
+            let mut next = 0;
+            while next < members.len() {
+                for &(_, t) in self.of(members[next]) {
+                    if !std::mem::replace(&mut seen[t as usize], true) {
+                        members.push(t);
+                    }
+                }
+                next += 1;
+            }
+            out.push(members);
+        }
+        out
+    }
+}
+
+/// A maximum spanning forest of |w| (Kruskal) with the signs it implies.
+struct Forest {
+    signs: Vec<f32>,
+    /// Parent of each sub-domain, itself for a root.
+    parent: Vec<u32>,
+    /// Steps to the root.
+    depth: Vec<u32>,
+    /// Parents before children.
+    order: Vec<u32>,
+}
+
+impl Forest {
+    fn strongest_first(n: usize, edges: &[Edge]) -> Forest {
+        let mut order: Vec<u32> = (0..edges.len() as u32).collect();
+        let strength = |&i: &u32| edges[i as usize].weight.abs();
+        order.sort_by(|i, j| strength(j).total_cmp(&strength(i)).then(i.cmp(j)));
+        let mut set: Vec<u32> = (0..n as u32).collect();
+        fn root(set: &mut [u32], mut i: u32) -> u32 {
+            while set[i as usize] != i {
+                set[i as usize] = set[set[i as usize] as usize];
+                i = set[i as usize];
+            }
+            i
+        }
+        let mut tree = Vec::with_capacity(n);
+        for i in order {
+            let e = edges[i as usize];
+            let (a, b) = (root(&mut set, e.a), root(&mut set, e.b));
+            if a != b {
+                set[a.max(b) as usize] = a.min(b);
+                tree.push(e);
+            }
+        }
+        Forest::rooted(n, &tree)
+    }
+
+    /// Roots every tree at its first sub-domain and carries signs from there.
+    fn rooted(n: usize, tree: &[Edge]) -> Forest {
+        let adjacency = Adjacency::new(n, tree);
+        let mut forest = Forest {
+            signs: vec![1.0; n],
+            parent: (0..n as u32).collect(),
+            depth: vec![0; n],
+            order: Vec::with_capacity(n),
+        };
+        for component in adjacency.components() {
+            for &s in &component {
+                for &(e, t) in adjacency.of(s) {
+                    if t != forest.parent[s as usize] {
+                        forest.parent[t as usize] = s;
+                        forest.depth[t as usize] = forest.depth[s as usize] + 1;
+                        forest.signs[t as usize] =
+                            forest.signs[s as usize] * tree[e as usize].weight.signum();
+                    }
+                }
+            }
+            forest.order.extend(component);
+        }
+        forest
+    }
+
+    /// Flips whole branches while that lowers the energy, the best branch first. The gain of a branch is the sum of
+    /// w s s over the edges that leave it: added at both ends and taken off twice at their lowest common ancestor, it is
+    /// a sum over the branch.
+    fn flip_branches(&self, edges: &[Edge], signs: &mut [f32]) {
+        // Every round lowers the energy by a finite amount; the bound only guards the time on graphs without order.
+        for _ in 0..200 {
+            let mut cut = vec![0.0f64; signs.len()];
+            for e in edges {
+                let agreement = (e.weight * signs[e.a as usize] * signs[e.b as usize]) as f64;
+                cut[e.a as usize] += agreement;
+                cut[e.b as usize] += agreement;
+                cut[self.ancestor(e.a, e.b) as usize] -= 2.0 * agreement;
+            }
+            let mut worst = (-1e-6, u32::MAX);
+            for &s in self.order.iter().rev() {
+                let value = cut[s as usize];
+                let parent = self.parent[s as usize];
+                if parent != s {
+                    cut[parent as usize] += value;
+                    if value < worst.0 {
+                        worst = (value, s);
+                    }
+                }
+            }
+            if worst.1 == u32::MAX {
+                return;
+            }
+            let mut inside = vec![false; signs.len()];
+            inside[worst.1 as usize] = true;
+            for &s in &self.order {
+                inside[s as usize] |=
+                    self.parent[s as usize] != s && inside[self.parent[s as usize] as usize];
+                if inside[s as usize] {
+                    signs[s as usize] = -signs[s as usize];
+                }
+            }
+        }
+    }
+
+    fn ancestor(&self, mut a: u32, mut b: u32) -> u32 {
+        while a != b {
+            if self.depth[a as usize] >= self.depth[b as usize] {
+                a = self.parent[a as usize];
+            } else {
+                b = self.parent[b as usize];
+            }
+        }
+        a
+    }
+}
+
+/// Flips single sub-domains while that lowers the energy.
+fn flip_single(edges: &[Edge], adjacency: &Adjacency, signs: &mut [f32]) {
+    let mut queue: VecDeque<u32> = (0..signs.len() as u32).collect();
+    let mut queued = vec![true; signs.len()];
+    while let Some(s) = queue.pop_front() {
+        queued[s as usize] = false;
+        let field: f32 = adjacency
+            .of(s)
+            .iter()
+            .map(|&(e, t)| edges[e as usize].weight * signs[t as usize])
+            .sum();
+        if field * signs[s as usize] < -1e-6 {
+            signs[s as usize] = -signs[s as usize];
+            for &(_, t) in adjacency.of(s) {
+                if !std::mem::replace(&mut queued[t as usize], true) {
+                    queue.push_back(t);
+                }
+            }
+        }
+    }
+}
+
+/// Algorithm 1. The start is the sub-domain of the site with the largest coordinate, its normal along that axis.
+fn advancing_front(
+    fits: &Fits,
+    sites: &Sites,
+    edges: &[Edge],
+    adjacency: &Adjacency,
+    signs: &mut [f32],
+) {
+    let mut aligned = vec![false; signs.len()];
+    let mut marked = vec![false; signs.len()];
+    for component in adjacency.components() {
+        // Steps 1 and 2.
+        let (start, sign) = highest(&component, fits, sites);
+        signs[start as usize] = sign;
+        aligned[start as usize] = true;
+        marked[start as usize] = true;
+        let mut front = VecDeque::from([start]);
+        // Step 4.
+        while let Some(active) = front.pop_front() {
+            let unaligned: Vec<u32> = adjacency
+                .of(active)
+                .iter()
+                .map(|&(_, t)| t)
+                .filter(|&t| !aligned[t as usize])
+                .collect();
+            let beliefs = believe(&unaligned, edges, adjacency, &aligned, signs);
+            for (&s, belief) in unaligned.iter().zip(beliefs) {
+                signs[s as usize] = if belief < 0.0 { -1.0 } else { 1.0 };
+                aligned[s as usize] = true;
+                if !std::mem::replace(&mut marked[s as usize], true) {
+                    front.push_back(s);
+                }
+            }
+        }
+    }
+}
+
+/// Belief propagation (sum-product, in log-odds) on the graph of the `free` sub-domains; aligned neighbours are evidence.
+/// The potential of an edge is exp(β w s s'); returns the log-odds of +1.
+fn believe(
+    free: &[u32],
+    edges: &[Edge],
+    adjacency: &Adjacency,
+    aligned: &[bool],
+    signs: &[f32],
+) -> Vec<f64> {
+    /// Inverse temperature: an edge of full agreement is e^8 times likelier than one of full contradiction.
+    const BETA: f64 = 4.0;
+    /// Rounds of messages; local graphs are a few steps wide.
+    const ROUNDS: usize = 10;
+    let local = |s: u32| free.iter().position(|&f| f == s);
+    let mut evidence = vec![0.0; free.len()];
+    // Directed local edges: from, to, β w.
+    let mut links: Vec<(usize, usize, f64)> = Vec::new();
+    for (i, &s) in free.iter().enumerate() {
+        for &(e, t) in adjacency.of(s) {
+            let strength = BETA * edges[e as usize].weight as f64;
+            if aligned[t as usize] {
+                evidence[i] += 2.0 * strength * signs[t as usize] as f64;
+            } else if let Some(j) = local(t) {
+                links.push((i, j, strength));
+            }
+        }
+    }
+    let mut messages = vec![0.0; links.len()];
+    let mut beliefs = evidence.clone();
+    for _ in 0..ROUNDS {
+        let next: Vec<f64> = links
+            .iter()
+            .map(|&(from, to, strength)| {
+                // What `from` believes without what `to` told it: 2 atanh(tanh(βw) tanh(h/2)).
+                let told = links
+                    .iter()
+                    .zip(&messages)
+                    .find(|(l, _)| (l.0, l.1) == (to, from))
+                    .map_or(0.0, |(_, &m)| m);
+                let product = libm::tanh(strength) * libm::tanh(0.5 * (beliefs[from] - told));
+                2.0 * libm::atanh(product.clamp(-0.999_999, 0.999_999))
+            })
+            .collect();
+        messages = next;
+        beliefs.copy_from_slice(&evidence);
+        for (&(_, to, _), m) in links.iter().zip(&messages) {
+            beliefs[to] += m;
+        }
+    }
+    beliefs
+}
+
+/// The sub-domain of a component that holds the site with the largest coordinate component, and the sign that turns its
+/// normal there along that axis.
+fn highest(component: &[u32], fits: &Fits, sites: &Sites) -> (u32, f32) {
+    let mut best = (f32::NEG_INFINITY, 0, 0u32, 0usize);
+    for &s in component {
+        let subdomain = &fits.subdomains[s as usize];
+        for &i in &subdomain.support[..subdomain.core] {
+            let p = sites.tree.points[i as usize];
+            let axis = p.max_position();
+            if p[axis] > best.0 {
+                best = (p[axis], s, i, axis);
+            }
+        }
+    }
+    let (_, s, i, axis) = best;
+    let slope = fits.functions[s as usize]
+        .evaluate(sites.tree.points[i as usize])
+        .1[axis];
+    (s, if slope < 0.0 { -1.0 } else { 1.0 })
+}
+
+/// Gives a component the sign that encloses a positive volume.
+fn turn_outward(
+    component: &[u32],
+    fits: &Fits,
+    sites: &Sites,
+    gradients: &[Vec<Vec3>],
+    signs: &mut [f32],
+) {
+    let cores = || {
+        component.iter().flat_map(|&s| {
+            let subdomain = &fits.subdomains[s as usize];
+            let sign = signs[s as usize];
+            subdomain.support[..subdomain.core]
+                .iter()
+                .zip(&gradients[s as usize])
+                .map(move |(&i, &g)| {
+                    let area = (sites.spacing[i as usize] as f64).powi(2);
+                    (
+                        sites.tree.points[i as usize].as_dvec3(),
+                        (g * sign).as_dvec3() * area,
+                        area,
+                    )
+                })
+        })
+    };
+    let area: f64 = cores().map(|c| c.2).sum();
+    let center = cores().map(|c| c.0 * c.2).sum::<DVec3>() / area.max(f64::MIN_POSITIVE);
+    let volume: f64 = cores().map(|(p, n, _)| (p - center).dot(n)).sum::<f64>() / 3.0;
+    let size: f64 = cores()
+        .map(|(p, n, _)| (p - center).length() * n.length())
+        .sum::<f64>()
+        / 3.0;
+    // A closed body has a volume of a third of `size` and more; a nearly flat sheet next to none.
+    let flip = if volume.abs() > 0.02 * size {
+        volume < 0.0
+    } else {
+        let (s, sign) = highest(component, fits, sites);
+        sign != signs[s as usize]
+    };
+    if flip {
+        component
+            .iter()
+            .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+    }
+}
+
+/// The oriented normal of every site: the gradient of the function whose core it is in.
+fn site_normals(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>], signs: &[f32]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; sites.tree.points.len()];
+    for ((subdomain, gradients), &sign) in fits.subdomains.iter().zip(gradients).zip(signs) {
+        for (&i, &g) in subdomain.support[..subdomain.core].iter().zip(gradients) {
+            normals[i as usize] = g * sign;
+        }
+    }
+    normals
+}
