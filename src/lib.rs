@@ -52,6 +52,9 @@ pub mod report;
 // Beside the pipeline: solids with a known surface and their simulated scans.
 pub mod samples;
 
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
+
 pub use cloud::Cloud;
 pub use error::{Error, Result};
 pub use params::{ReduceParams, SurfaceParams};

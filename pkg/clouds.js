@@ -1,0 +1,112 @@
+/** The caller's clouds and bytes on their way in: of the right kind, and no longer the caller's memory. */
+import { PointweaveError } from './errors.js';
+import { buffersOf } from './serve.js';
+
+/** @import { PointCloud, ReducedCloud, SurfaceMesh } from './types.js' */
+
+/**
+ * A cloud's arrays as wasm takes them. Lengths and values are checked there.
+ * @param {unknown} cloud
+ * @param {boolean} [transfer] take the caller's buffers instead of copying them
+ * @returns {PointCloud}
+ */
+export function cloudArgument(cloud, transfer) {
+  const { positions, colors, normals, attributes = {}, origin } = fields(cloud, 'cloud');
+  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
+  return own({ positions, ...optionalArrays({ colors, normals, attributes, origin }) }, transfer);
+}
+
+/**
+ * What a writer needs of a result.
+ * @param {unknown} result
+ * @param {boolean} [transfer]
+ */
+export function resultArgument(result, transfer) {
+  const { positions, colors, normals, attributes = {}, origin, indices } = fields(result, 'result');
+  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
+  if (indices !== undefined) expectArray('indices', indices, Uint32Array);
+  return own({ positions, indices, ...optionalArrays({ colors, normals, attributes, origin }) }, transfer);
+}
+
+/**
+ * A file's bytes.
+ * @param {unknown} data
+ * @param {boolean} [transfer]
+ * @returns {Promise<Uint8Array>}
+ */
+export async function bytesArgument(data, transfer) {
+  if (typeof Blob !== 'undefined' && data instanceof Blob) return new Uint8Array(await data.arrayBuffer());
+  if (data instanceof ArrayBuffer) return own(new Uint8Array(data), transfer);
+  if (ArrayBuffer.isView(data)) return own(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), transfer);
+  throw badInput('data', 'a File, Blob, ArrayBuffer or Uint8Array', data);
+}
+
+/**
+ * @param {unknown} object
+ * @param {string} name
+ * @returns {Record<string, any>}
+ */
+function fields(object, name) {
+  if (typeof object !== 'object' || object === null) throw badInput(name, 'an object with positions', object);
+  return object;
+}
+
+/** @param {Record<string, any>} arrays */
+function optionalArrays({ colors, normals, attributes, origin }) {
+  if (colors !== undefined) expectArray('colors', colors, Uint8Array);
+  if (normals !== undefined) expectArray('normals', normals, Float32Array);
+  for (const [name, values] of Object.entries(attributes)) expectArray(`attributes.${name}`, values, Float32Array);
+  if (origin !== undefined && !(Array.isArray(origin) && origin.length === 3 && origin.every(Number.isFinite))) {
+    throw badInput('origin', 'three finite numbers', origin);
+  }
+  return { colors, normals, attributes: { ...attributes }, origin: origin && [...origin] };
+}
+
+/**
+ * @param {string} name
+ * @param {unknown} value
+ * @param {Function & { name: string }} type
+ * @param {string} [expected]
+ */
+function expectArray(name, value, type, expected = `a ${type.name}`) {
+  if (!(value instanceof type)) throw badInput(name, expected, value);
+}
+
+/** @param {string} name @param {string} expected @param {unknown} found */
+function badInput(name, expected, found) {
+  const kind = found === null ? 'null' : typeof found === 'object' ? found.constructor?.name ?? 'object' : typeof found;
+  return new PointweaveError({ code: 'bad-input', message: `${name} is of type ${kind}: expected ${expected}`, expected, found: kind });
+}
+
+/**
+ * The same arrays in memory of their own, copied or taken over.
+ *
+ * Shared memory cannot be taken over and is copied in either case. A view takes its whole buffer along.
+ * @template T
+ * @param {T} value
+ * @param {boolean} [transfer]
+ * @returns {T}
+ */
+function own(value, transfer) {
+  return transfer ? structuredClone(copyArrays(value, isShared), { transfer: buffersOf(value) }) : copyArrays(value, () => true);
+}
+
+/** @param {ArrayBufferView} array */
+function isShared(array) {
+  return !(array.buffer instanceof ArrayBuffer);
+}
+
+/**
+ * @template T
+ * @param {T} value
+ * @param {(array: ArrayBufferView) => boolean} chosen
+ * @returns {T}
+ */
+function copyArrays(value, chosen) {
+  if (ArrayBuffer.isView(value)) {
+    const array = /** @type {Float32Array} */ (/** @type {unknown} */ (value));
+    return chosen(value) ? /** @type {any} */ (array.slice()) : value;
+  }
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) return value;
+  return /** @type {any} */ (Object.fromEntries(Object.entries(value).map(([key, part]) => [key, copyArrays(part, chosen)])));
+}

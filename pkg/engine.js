@@ -1,0 +1,219 @@
+/**
+ * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
+ * that does them.
+ */
+import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
+import { PointweaveError } from './errors.js';
+import { inProcessHost, workerHost } from './hosts.js';
+import { checkEngineOptions, checkOptions } from './options.js';
+
+/** @import { Build, EngineOptions } from './types.js' */
+/** @import { Host, Watch, WorkerLike } from './hosts.js' */
+/** @import { Glue, Request } from './core.js' */
+
+/**
+ * What differs between a browser and Node.
+ * @typedef {object} Platform
+ * @property {boolean} worker whether an engine has a worker unless it is told
+ * @property {() => number} cores
+ * @property {(worker: boolean) => { possible: boolean, reason: string }} threads whether threads can run here, and why
+ * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
+ * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {() => WorkerLike} startWorker
+ */
+
+/** More threads than this cost memory and gain nothing. */
+const MOST_AUTO_THREADS = 16;
+
+export class Engine {
+  /** @type {Platform} */
+  #platform;
+  #worker;
+  #wasmUrl;
+  /** @type {{ build: Build, threads: number, reason: string }} */
+  #choice;
+  /** Ends when the last call of the queue has. @type {Promise<unknown>} */
+  #tail = Promise.resolve();
+  /** @type {Promise<Host> | undefined} */
+  #host;
+  #disposal = new AbortController();
+
+  /**
+   * Nothing is loaded before the first call, or {@link Engine.ready}.
+   * @param {Platform} platform
+   * @param {EngineOptions} [options]
+   */
+  constructor(platform, options) {
+    const { threads = 'auto', worker = platform.worker, wasmUrl } = checkEngineOptions(options);
+    this.#platform = platform;
+    this.#worker = worker;
+    this.#wasmUrl = wasmUrl;
+    this.#choice = chooseBuild(platform, threads, worker);
+  }
+
+  get build() {
+    return this.#choice.build;
+  }
+
+  get threads() {
+    return this.#choice.threads;
+  }
+
+  get reason() {
+    return this.#choice.reason;
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async reduce(cloud, options) {
+    const { own, transfer, ...watch } = this.#check('reduce', options);
+    return this.#run({ call: 'reduce', args: [cloudArgument(cloud, transfer), own] }, watch);
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async reconstruct(cloud, options) {
+    const { own, transfer, ...watch } = this.#check('reconstruct', options);
+    return this.#run({ call: 'reconstruct', args: [cloudArgument(cloud, transfer), own] }, watch);
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async inspect(cloud, options) {
+    const { transfer, ...watch } = this.#check('inspect', options);
+    return this.#run({ call: 'inspect', args: [cloudArgument(cloud, transfer)] }, watch);
+  }
+
+  /** @param {any} data @param {any} [options] */
+  async read(data, options) {
+    const { own, transfer, ...watch } = this.#check('read', options);
+    const bytes = await bytesArgument(data, transfer);
+    return this.#run({ call: 'read', args: [bytes, { name: data.name, ...own }] }, watch);
+  }
+
+  /** @param {any} result @param {any} [options] */
+  async write(result, options) {
+    const { own, transfer, ...watch } = this.#check('write', options);
+    return this.#run({ call: 'write', args: [resultArgument(result, transfer), own] }, watch);
+  }
+
+  /** @param {any} model @param {any} [options] */
+  async sample(model, options) {
+    const { own, ...watch } = this.#check('sample', { model, ...options });
+    return this.#run({ call: 'sample', args: [own] }, watch);
+  }
+
+  /** Ends the worker or the pool. The call under way and those that wait reject with `disposed`. */
+  async dispose() {
+    if (this.#disposal.signal.aborted) return;
+    this.#disposal.abort(new PointweaveError({ code: 'disposed', message: 'the engine was disposed of' }));
+    const host = this.#host;
+    this.#host = undefined;
+    await host?.then((started) => started.end(), nothing);
+  }
+
+  /** Starts the host, when there is none. A start that fails is forgotten, so that the next call tries again. */
+  ready() {
+    this.#disposal.signal.throwIfAborted();
+    this.#host ??= this.#start().catch((error) => {
+      this.#host = undefined;
+      throw error;
+    });
+    return this.#host;
+  }
+
+  /**
+   * Everything that can be wrong before the caller's arrays are taken.
+   * @param {Parameters<typeof checkOptions>[0]} call
+   * @param {unknown} options
+   */
+  #check(call, options) {
+    this.#disposal.signal.throwIfAborted();
+    const checked = checkOptions(call, options);
+    checked.signal?.throwIfAborted();
+    return checked;
+  }
+
+  /**
+   * Waits for the calls before, then has the host do this one.
+   * @param {Request} request
+   * @param {Watch} watch
+   */
+  async #run(request, { signal: own, onProgress }) {
+    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
+    const before = this.#tail;
+    const result = unlessAborted(before, signal).then(async () => {
+      const host = await unlessAborted(this.ready(), signal);
+      try {
+        const value = await host.run(request, { signal, onProgress });
+        return this.#signed(value);
+      } finally {
+        if (!host.usable()) this.#host = undefined;
+      }
+    });
+    this.#tail = Promise.all([before, result.then(nothing, nothing)]);
+    return result;
+  }
+
+  /**
+   * Says in the report what has computed it.
+   * @param {any} value
+   */
+  #signed(value) {
+    for (const report of [value.report, value.cloud?.report]) if (report) Object.assign(report, this.#choice);
+    return value;
+  }
+
+  /** @returns {Promise<Host>} */
+  async #start() {
+    if (this.build === 'threads') {
+      try {
+        return await this.#startBuild();
+      } catch (error) {
+        const why = error instanceof Error ? error.message : String(error);
+        this.#choice = { build: 'single', threads: 1, reason: `the threads build did not start: ${why}` };
+      }
+    }
+    return this.#startBuild();
+  }
+
+  async #startBuild() {
+    const { build, threads } = this;
+    const module = await this.#platform.compile(build, this.#wasmUrl);
+    const options = { build, threads, module };
+    return this.#worker
+      ? workerHost(this.#platform.startWorker(), options)
+      : inProcessHost(await this.#platform.loadGlue(build), options);
+  }
+}
+
+/**
+ * @param {Platform} platform
+ * @param {'auto' | number} threads
+ * @param {boolean} worker
+ * @returns {{ build: Build, threads: number, reason: string }}
+ */
+function chooseBuild(platform, threads, worker) {
+  const single = /** @type {const} */ ({ build: 'single', threads: 1 });
+  if (threads === 1) return { ...single, reason: 'one thread was asked for' };
+  const { possible, reason } = platform.threads(worker);
+  if (!possible) return { ...single, reason };
+  const wanted = threads === 'auto' ? Math.min(platform.cores(), MOST_AUTO_THREADS) : threads;
+  if (wanted === 1) return { ...single, reason: 'there is one processor core' };
+  return { build: 'threads', threads: wanted, reason };
+}
+
+function nothing() {}
+
+/**
+ * What `promise` gives, or the signal's reason as soon as it is aborted.
+ * @template T
+ * @param {Promise<T>} promise
+ * @param {AbortSignal} signal
+ * @returns {Promise<T>}
+ */
+function unlessAborted(promise, signal) {
+  return new Promise((resolve, reject) => {
+    const abort = () => reject(signal.reason);
+    if (signal.aborted) return abort();
+    signal.addEventListener('abort', abort);
+    promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
+  });
+}

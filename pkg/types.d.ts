@@ -1,0 +1,296 @@
+/**
+ * Point clouds to reduced clouds, oriented normals and meshes.
+ *
+ * Lengths and tolerances that are called fractions are fractions of the diagonal of the input's bounding box.
+ * Positions go in and come out in the caller's own frame and unit.
+ */
+
+/** Points with whatever is attached to them; every array has one entry (or triple) a point. */
+export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
+  /** x y z x y z … `Float64Array` keeps georeferenced clouds exact. Results have the type of the input. */
+  positions: Positions;
+  /** r g b r g b …, 0-255. */
+  colors?: Uint8Array;
+  /** Unit vectors x y z …; used as they are where `orient` is false. */
+  normals?: Float32Array;
+  /** One value a point: intensity, classification, time … */
+  attributes?: Record<string, Float32Array>;
+  /** Added to the positions to give world coordinates; carried to every result. */
+  origin?: [number, number, number];
+}
+
+/** The steps of a call, in the order in which they run. */
+export type Stage = 'octree' | 'features' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
+
+export interface Progress {
+  stage: Stage;
+  /** Share of the stage that is done, 0 to 1. */
+  fraction: number;
+  /** Share of the whole call that is done; never decreases and ends at 1. */
+  overall: number;
+}
+
+/** Options that every call takes. */
+export interface CallOptions {
+  /**
+   * Aborting rejects the call with the signal's reason, within 100 ms where the engine has a worker. Without one
+   * the caller's thread is busy computing, so only an abort from within `onProgress` is noticed before the end.
+   */
+  signal?: AbortSignal;
+  /** Called from time to time. What it throws stops the call, which rejects with it. */
+  onProgress?: (progress: Progress) => void;
+  /** Take the buffers of the arrays handed in, which are detached, instead of copying them. Default `false`. */
+  transfer?: boolean;
+}
+
+/** How much a reduction keeps: exactly one of them. */
+export type Target =
+  /** Share of the points, (0, 1]. The count of the result is exact. */
+  | { ratio: number }
+  /** Exactly this many points. */
+  | { count: number }
+  /** As few points as keep the local surfaces within this distance, a fraction, (0, 1). */
+  | { tolerance: number }
+  /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
+  | { flatness: number };
+
+export interface ReduceOptions {
+  /** Default `{ ratio: 1/3 }`. */
+  target?: Target;
+  /** `'paper'` is sections 3.1-3.2 of the paper to the letter; `'adaptive'` (the default) is our best. */
+  method?: 'adaptive' | 'paper';
+  /** m of eq. 1-5, (1, 100]. Default 1.5 (`'adaptive'`), 2 (`'paper'`). */
+  fuzzifier?: number;
+  /**
+   * ε of eq. 6, (0, 1]. `'paper'` stops when no membership changes by more, default 0.001; `'adaptive'` when no
+   * centre moves by more than this share of the wanted spacing, default 0.01.
+   */
+  epsilon?: number;
+  /** At least 1. Default 8 (`'adaptive'`), 100 (`'paper'`). */
+  maxIterations?: number;
+  /** The norm-inducing matrix A of eq. 1, for `'paper'`. Default `'euclidean'`. */
+  norm?: 'euclidean' | 'diagonal' | 'mahalanobis';
+  /** How many clusters a sub-domain gets: in proportion to the target (default), or by eq. 7. */
+  clusters?: 'proportional' | 'validity';
+  /** 0 = even spacing … 1 = strongest concentration on curved regions. Default 0.5. */
+  curvatureWeight?: number;
+  /**
+   * Where a centre goes: `'implicit'` on the surface (default), `'mesh'` best for triangles between the points,
+   * `'center'` the raw centre, `'sample'` the nearest input point.
+   */
+  placement?: 'implicit' | 'mesh' | 'center' | 'sample';
+  /** Of the random memberships that the paper's method starts from, an integer from 0. Default 0. */
+  seed?: number;
+  /** Most points of a sub-domain, 8 to 65536. Default: follows the target (`'adaptive'`), 256 (`'paper'`). */
+  cellPoints?: number;
+  /** Deepest level of the octree, 1 to 21. Default 21. */
+  maxDepth?: number;
+}
+
+export interface ReconstructOptions {
+  /** How the cloud is reduced first; `false` sends every point to the fit. Default {@link ReduceOptions}' defaults. */
+  reduce?: ReduceOptions | false;
+  /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
+  accuracy?: number;
+  /** φ of eq. 9: r³ (`'triharmonic'`, the default), r (`'biharmonic'`), r² log r (`'thin-plate'`, the paper's). */
+  kernel?: 'biharmonic' | 'triharmonic' | 'thin-plate';
+  /** Ridge on the diagonal of eq. 11, from 0; `'auto'` (default) follows the noise that `inspect` estimates. */
+  smoothing?: number | 'auto';
+  /** Infer which side is out (default); `false` takes the cloud's own normals as they are. */
+  orient?: boolean;
+  /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
+  propagation?: 'global' | 'paper';
+  /** Edge length of the extraction grid, a fraction, 1e-4 to 0.25; `'auto'` (default) follows the spacing. */
+  resolution?: number | 'auto';
+  /** Keep creases in the mesh. Default `true`. */
+  sharp?: boolean;
+  /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
+  boundary?: 'auto' | 'closed' | 'open';
+}
+
+/** Distances as fractions. */
+export interface Distances {
+  mean: number;
+  rms: number;
+  max: number;
+}
+
+/** What ran, where and for how long. */
+export interface RunReport {
+  /** Milliseconds by stage. */
+  ms: Partial<Record<Stage, number>>;
+  totalMs: number;
+  /** The most memory that the WebAssembly instance has had so far; it never shrinks. */
+  peakMemoryBytes: number;
+  build: Build;
+  threads: number;
+  /** Why this build ran. */
+  reason: string;
+}
+
+export interface ReduceReport extends RunReport {
+  inputPoints: number;
+  outputPoints: number;
+  /** Sub-domains of the octree. */
+  cells: number;
+  /** Of fuzzy c-means, the most in any sub-domain. */
+  iterations: number;
+  /** J of eq. 1, summed over the sub-domains. */
+  objective: number;
+  /** V of eq. 7, mean over the sub-domains. */
+  validity: number;
+  /** Spread of the distance to the nearest neighbour over its mean; 0 is perfectly even. */
+  evenness: number;
+  /** Estimated noise, a fraction. */
+  noise: number;
+  /** Points kept as they were, for a sharp feature. */
+  sharpPoints: number;
+  /** Of the input to the reduced surface. */
+  distance: Distances;
+}
+
+export interface ReducedCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array>
+  extends PointCloud<Positions> {
+  /** Unit; oriented outward where `orient` is true (the default of `reconstruct`), else of arbitrary sign. */
+  normals: Float32Array;
+  /** Surface variation λ0/(λ0+λ1+λ2) around the point. */
+  variation: Float32Array;
+  /** How many input points it stands for; they sum to the input's count. */
+  weights: Float32Array;
+  /** Index of the nearest input point. */
+  nearest: Uint32Array;
+  report: ReduceReport;
+}
+
+export interface SurfaceReport extends ReduceReport {
+  triangles: number;
+  components: number;
+  boundaryEdges: number;
+  nonManifoldEdges: number;
+  /** One number a closed component. */
+  genus: number[];
+  /** How often a sub-domain was split because its fit was not within the accuracy. */
+  refinements: number;
+  /** Of the fit at the input points. */
+  residual: Distances;
+  /** Share of the input that stayed beyond the accuracy. */
+  beyondAccuracy: number;
+  orientationEnergy: number;
+}
+
+export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
+  /** x y z of each vertex. */
+  positions: Positions;
+  /** Unit, outward. */
+  normals: Float32Array;
+  /** Three a triangle, counter-clockwise seen from outside. */
+  indices: Uint32Array;
+  colors?: Uint8Array;
+  attributes?: Record<string, Float32Array>;
+  origin?: [number, number, number];
+  /** The points that the surface was fitted to. */
+  cloud: ReducedCloud<Positions>;
+  report: SurfaceReport;
+}
+
+export interface CloudInfo {
+  count: number;
+  bounds: { min: [number, number, number]; max: [number, number, number] };
+  /** Of the bounding box, in the caller's unit. */
+  diagonal: number;
+  /** Mean distance to the nearest neighbour, a fraction. */
+  spacing: number;
+  /** Points at the very place of another. */
+  duplicates: number;
+  /** Points with a coordinate that is NaN or infinite; left out of everything else here. */
+  nonFinite: number;
+  /** Estimated noise, a fraction. */
+  noise: number;
+}
+
+export type Format = 'ply' | 'xyz';
+
+export interface ReadOptions {
+  /** The file's name; its extension decides between formats that look alike. A `File` brings its own. */
+  name?: string;
+  /** Default: recognised by content, then by name. */
+  format?: Format;
+}
+
+export interface WriteOptions {
+  /** Default `'ply'`. */
+  format?: Format;
+  /** Of a PLY file. Default `'binary'` (little-endian). */
+  encoding?: 'binary' | 'ascii';
+}
+
+export type Model = 'duck' | 'pig' | 'part';
+
+export interface SampleOptions {
+  /** Default 35,647, the paper's duck. */
+  count?: number;
+  /** An integer from 0. Default 0. */
+  seed?: number;
+}
+
+export type Build = 'threads' | 'single';
+
+export interface EngineOptions {
+  /**
+   * `'auto'` (default) takes the wasm-threads build in Node and where the page is cross-origin isolated, with a
+   * thread a core, else the single-threaded one; 1 takes the single-threaded build.
+   */
+  threads?: 'auto' | number;
+  /** Compute in a worker, which keeps the caller's thread free. Default: `true` in a browser, `false` in Node. */
+  worker?: boolean;
+  /** The folder that holds `single/` and `threads/`, or the URL of either wasm file. Default: beside the package. */
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL };
+}
+
+/** The functions of the package with a queue, a worker and a build of their own. */
+export interface Engine {
+  /** Known from the start; `'single'` from then on where the threads build failed to start. */
+  readonly build: Build;
+  readonly threads: number;
+  /** Why this build. */
+  readonly reason: string;
+  reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): Promise<ReducedCloud<P>>;
+  reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): Promise<SurfaceMesh<P>>;
+  /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
+  inspect(cloud: PointCloud, options?: CallOptions): Promise<CloudInfo>;
+  read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<PointCloud>;
+  write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: WriteOptions & CallOptions): Promise<Uint8Array>;
+  /** A generated scan of a model whose true surface is known: several views, uneven density, noise. */
+  sample(model: Model, options?: SampleOptions & CallOptions): Promise<PointCloud<Float32Array>>;
+  /** Ends the worker and its threads. Calls under way reject with `disposed`, as every later one does. */
+  dispose(): Promise<void>;
+}
+
+export const reduce: Engine['reduce'];
+export const reconstruct: Engine['reconstruct'];
+export const inspect: Engine['inspect'];
+export const read: Engine['read'];
+export const write: Engine['write'];
+export const sample: Engine['sample'];
+
+/** Resolves when the engine is ready to compute. */
+export function createEngine(options?: EngineOptions): Promise<Engine>;
+
+/** What is taken for each option that is not given; `undefined` where that follows from other options. */
+export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };
+
+export type ErrorCode =
+  | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
+  | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal';
+
+/** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
+export class PointweaveError extends Error {
+  /** Stable, meant for programs; the message is meant for people and may change. */
+  readonly code: ErrorCode;
+  /** The point, line or byte that is wrong, where there is one. */
+  readonly index?: number;
+  /** What would have been right. */
+  readonly expected?: unknown;
+  /** What was there instead. */
+  readonly found?: unknown;
+}
