@@ -31,6 +31,8 @@
 // Base: knows no stage.
 pub mod error;
 pub mod params;
+#[cfg(feature = "threads")]
+pub mod pool;
 pub mod progress;
 pub mod par;
 pub mod rng;

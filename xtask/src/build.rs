@@ -1,0 +1,155 @@
+//! The two wasm builds: one code, with and without threads (DESIGN: "Two builds, one code").
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::setup;
+use crate::shell::{Result, command, root, run, say};
+use crate::toolchain::{self, Toolchain};
+
+/// One of the two wasm builds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Build {
+    /// One thread and no atomics: runs on every page.
+    Single,
+    /// A pool of workers over shared memory: needs a cross-origin isolated page, or Node.
+    Threads,
+}
+
+impl Build {
+    pub const ALL: [Build; 2] = [Build::Single, Build::Threads];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "single",
+            Self::Threads => "threads",
+        }
+    }
+
+    /// Arguments for rustc. The two builds keep apart target folders, or each would undo the other.
+    fn rust_flags(self) -> Vec<String> {
+        let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
+        match self {
+            Self::Single => strings(&["-Ctarget-feature=+simd128"]),
+            Self::Threads => {
+                let mut flags: Vec<String> = strings(&[
+                    "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
+                    "-Clink-arg=--shared-memory",
+                    "-Clink-arg=--import-memory",
+                    // Shared memory states its limit; this is all that wasm32 can address. Whoever
+                    // makes the memory may choose less.
+                    "-Clink-arg=--max-memory=4294967296",
+                ]);
+                // What wasm-bindgen needs to give every thread its own stack and statics.
+                for symbol in ["__wasm_init_tls", "__tls_size", "__tls_align", "__tls_base", "__heap_base"] {
+                    flags.push(format!("-Clink-arg=--export={symbol}"));
+                }
+                flags
+            }
+        }
+    }
+
+    pub fn target_dir(self) -> PathBuf {
+        root().join("target").join(format!("wasm-{}", self.name()))
+    }
+
+    /// `cargo <action>` for this build, release profile.
+    pub fn cargo(self, toolchain: &Toolchain, action: &str) -> Command {
+        let mut cargo = toolchain.cargo();
+        cargo
+            .args([action, "--package", "pointweave", "--release", "--target", TARGET])
+            // Without panic_unwind: wasm aborts on panic.
+            .arg("-Zbuild-std=std,panic_abort")
+            .arg("--target-dir")
+            .arg(self.target_dir())
+            // Lets a stable compiler build its own standard library.
+            .env("RUSTC_BOOTSTRAP", "1")
+            // The one way that keeps spaces and overrides whatever flags the environment has.
+            .env("CARGO_ENCODED_RUSTFLAGS", self.rust_flags().join("\u{1f}"));
+        if self == Self::Threads {
+            cargo.args(["--features", "threads"]);
+        }
+        cargo
+    }
+}
+
+pub const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Features that the two builds may use, one by one: with `--all-features` wasm-opt writes
+/// instructions that no browser has yet.
+const WASM_OPT_FEATURES: [&str; 8] = [
+    "--enable-simd",
+    "--enable-bulk-memory",
+    "--enable-bulk-memory-opt",
+    "--enable-nontrapping-float-to-int",
+    "--enable-sign-ext",
+    "--enable-mutable-globals",
+    "--enable-reference-types",
+    "--enable-multivalue",
+];
+
+/// `cargo xtask build`: pkg/wasm/single and pkg/wasm/threads.
+pub fn build() -> Result<()> {
+    let toolchain = toolchain::wasm()?;
+    let tools = setup::wasm_tools()?;
+    setup::npm(&root().join("xtask"))?;
+    for build in Build::ALL {
+        say(&format!("building wasm, {}", build.name()));
+        run(
+            build.cargo(&toolchain, "build").arg("--lib"),
+            "the wasm build failed; its errors are above",
+        )?;
+        let out = root().join("pkg/wasm").join(build.name());
+        bind(&tools, build, &out)?;
+        optimise(build, &out.join("pointweave_bg.wasm"))?;
+    }
+    Ok(())
+}
+
+/// The JavaScript side, as modules that a page, a worker and Node load alike.
+fn bind(tools: &Path, build: Build, out: &Path) -> Result<()> {
+    if out.exists() {
+        fs::remove_dir_all(out).map_err(|error| format!("remove {} yourself: {error}", out.display()))?;
+    }
+    let wasm = build.target_dir().join(TARGET).join("release/pointweave.wasm");
+    let mut bindgen = command(tools);
+    bindgen.args(["bindgen", "--target", "web", "--remove-producers-section", "--out-dir"]).arg(out).arg(wasm);
+    run(&mut bindgen, "wasm-bindgen failed; its error is above")
+}
+
+fn optimise(build: Build, wasm: &Path) -> Result<()> {
+    let before = size(wasm);
+    let mut wasm_opt = command("node");
+    wasm_opt.arg("xtask/node_modules/binaryen/bin/wasm-opt").args(WASM_OPT_FEATURES);
+    if build == Build::Threads {
+        wasm_opt.arg("--enable-threads");
+    }
+    wasm_opt.arg("-O3").arg(wasm).arg("-o").arg(wasm);
+    run(&mut wasm_opt, "wasm-opt failed; its error is above")?;
+    say(&format!("{}: {} kB, wasm-opt made it from {} kB", wasm.display(), size(wasm), before));
+    Ok(())
+}
+
+fn size(file: &Path) -> u64 {
+    fs::metadata(file).map_or(0, |metadata| metadata.len() / 1000)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_threads_build_has_atomics() {
+        assert!(!Build::Single.rust_flags().concat().contains("atomics"));
+        assert!(Build::Threads.rust_flags().concat().contains("+atomics"));
+        assert_ne!(Build::Single.target_dir(), Build::Threads.target_dir());
+    }
+
+    #[test]
+    fn both_builds_have_simd() {
+        for build in Build::ALL {
+            assert!(build.rust_flags().concat().contains("+simd128"), "{}", build.name());
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! A Rust compiler with the sources of its standard library: both wasm builds compile the library
+//! anew, the threads build because the shipped one has no atomics, the other so that a machine
+//! needs nothing more.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::setup;
+use crate::shell::{Result, command, find, output, run, say};
+
+/// Debian's compiler for its browsers, kept current in every release, with sources and linker.
+const DEBIAN_PACKAGES: [&str; 5] =
+    ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22"];
+
+/// The compiler that makes wasm.
+#[derive(Debug, PartialEq)]
+pub enum Toolchain {
+    /// One of rustup's, by name.
+    Rustup(String),
+    /// The rustc and cargo that PATH finds, of no rustup.
+    Path,
+    /// Debian's packages.
+    Debian,
+}
+
+impl Toolchain {
+    /// Its cargo, set to use its own rustc only.
+    pub fn cargo(&self) -> Command {
+        match self {
+            Self::Rustup(name) => {
+                let mut cargo = command("cargo");
+                cargo.env("RUSTUP_TOOLCHAIN", name).env_remove("RUSTC");
+                cargo
+            }
+            Self::Path => command("cargo"),
+            Self::Debian => {
+                let mut cargo = command("/usr/bin/cargo");
+                cargo
+                    .env("PATH", debian_first(env::var_os("PATH").unwrap_or_default()))
+                    .env("RUSTC", "/usr/bin/rustc")
+                    // Set by the cargo and rustup that run xtask, for their own compiler.
+                    .env_remove("LD_LIBRARY_PATH")
+                    .env_remove("RUSTUP_TOOLCHAIN");
+                cargo
+            }
+        }
+    }
+
+    fn sysroot(&self) -> Option<PathBuf> {
+        let mut rustc = match self {
+            Self::Rustup(name) => {
+                let mut rustc = command("rustc");
+                rustc.env("RUSTUP_TOOLCHAIN", name);
+                rustc
+            }
+            Self::Path => command("rustc"),
+            Self::Debian => command("/usr/bin/rustc"),
+        };
+        output(rustc.args(["--print", "sysroot"])).map(PathBuf::from)
+    }
+
+    fn is_complete(&self) -> bool {
+        self.sysroot().is_some_and(|sysroot| has_library_sources(&sysroot))
+    }
+}
+
+fn has_library_sources(sysroot: &Path) -> bool {
+    sysroot.join("lib/rustlib/src/rust/library/std/Cargo.toml").is_file()
+}
+
+fn debian_first(path: OsString) -> OsString {
+    let folders = std::iter::once(PathBuf::from("/usr/bin")).chain(env::split_paths(&path));
+    env::join_paths(folders).expect("folders that PATH held already")
+}
+
+/// The first complete one of: what is there, rustup's after it may add the sources, Debian's.
+pub fn wasm() -> Result<Toolchain> {
+    let rustup = rustup_toolchains();
+    let debian = Path::new("/usr/bin/rustc").is_file().then_some(Toolchain::Debian);
+    let installed = rustup.iter().cloned().map(Toolchain::Rustup).chain([Toolchain::Path]).chain(debian);
+    if let Some(complete) = installed.into_iter().find(Toolchain::is_complete) {
+        return Ok(complete);
+    }
+    let rustup_may = env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0");
+    if let (Some(name), true) = (rustup.first(), rustup_may) {
+        say(&format!("installing rust-src for {name} with rustup: wasm builds compile std anew"));
+        let add = ["component", "add", "rust-src", "--toolchain", name];
+        if run(command("rustup").args(add), "rustup could not").is_ok() {
+            return Ok(Toolchain::Rustup(name.clone()));
+        }
+    }
+    setup::apt(
+        &DEBIAN_PACKAGES,
+        "a compiler with the sources of its standard library",
+        "run `rustup component add rust-src`, or take a machine with apt",
+    )?;
+    if Toolchain::Debian.is_complete() {
+        return Ok(Toolchain::Debian);
+    }
+    Err("Debian's rustc-web came without its sources; run `rustup component add rust-src`".into())
+}
+
+/// Names of rustup's toolchains, the active one first; empty without rustup.
+fn rustup_toolchains() -> Vec<String> {
+    if find("rustup").is_none() {
+        return Vec::new();
+    }
+    let active = output(command("rustup").args(["show", "active-toolchain"])).unwrap_or_default();
+    let all = output(command("rustup").args(["toolchain", "list"])).unwrap_or_default();
+    active_first(&active, &all)
+}
+
+fn active_first(active: &str, all: &str) -> Vec<String> {
+    let name = |line: &str| line.split_whitespace().next().map(String::from);
+    let mut names: Vec<String> = all.lines().filter_map(name).collect();
+    if let Some(active) = active.lines().next().and_then(name) {
+        names.retain(|other| *other != active);
+        names.insert(0, active);
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_active_toolchain_comes_first_and_once() {
+        let active = "1.95-x86_64-unknown-linux-gnu (overridden by RUSTUP_TOOLCHAIN)";
+        let all = "stable-x86_64-unknown-linux-gnu (default)\n1.95-x86_64-unknown-linux-gnu (active)\n";
+        assert_eq!(
+            active_first(active, all),
+            ["1.95-x86_64-unknown-linux-gnu", "stable-x86_64-unknown-linux-gnu"]
+        );
+        assert_eq!(active_first("", ""), Vec::<String>::new());
+    }
+
+    #[test]
+    fn debian_comes_first_on_path() {
+        assert_eq!(debian_first("/opt/bin:/usr/bin".into()), "/usr/bin:/opt/bin:/usr/bin");
+    }
+}
