@@ -42,7 +42,13 @@ impl Build {
                     "-Clink-arg=--max-memory=4294967296",
                 ]);
                 // What wasm-bindgen needs to give every thread its own stack and statics.
-                for symbol in ["__wasm_init_tls", "__tls_size", "__tls_align", "__tls_base", "__heap_base"] {
+                for symbol in [
+                    "__wasm_init_tls",
+                    "__tls_size",
+                    "__tls_align",
+                    "__tls_base",
+                    "__heap_base",
+                ] {
                     flags.push(format!("-Clink-arg=--export={symbol}"));
                 }
                 flags
@@ -58,7 +64,14 @@ impl Build {
     pub fn cargo(self, toolchain: &Toolchain, action: &str) -> Command {
         let mut cargo = toolchain.cargo();
         cargo
-            .args([action, "--package", "pointweave", "--release", "--target", TARGET])
+            .args([
+                action,
+                "--package",
+                "pointweave",
+                "--release",
+                "--target",
+                TARGET,
+            ])
             // Without panic_unwind: wasm aborts on panic.
             .arg("-Zbuild-std=std,panic_abort")
             .arg("--target-dir")
@@ -110,24 +123,44 @@ pub fn build() -> Result<()> {
 /// The JavaScript side, as modules that a page, a worker and Node load alike.
 fn bind(tools: &Path, build: Build, out: &Path) -> Result<()> {
     if out.exists() {
-        fs::remove_dir_all(out).map_err(|error| format!("remove {} yourself: {error}", out.display()))?;
+        fs::remove_dir_all(out)
+            .map_err(|error| format!("remove {} yourself: {error}", out.display()))?;
     }
-    let wasm = build.target_dir().join(TARGET).join("release/pointweave.wasm");
+    let wasm = build
+        .target_dir()
+        .join(TARGET)
+        .join("release/pointweave.wasm");
     let mut bindgen = command(tools);
-    bindgen.args(["bindgen", "--target", "web", "--remove-producers-section", "--out-dir"]).arg(out).arg(wasm);
+    bindgen
+        .args([
+            "bindgen",
+            "--target",
+            "web",
+            "--remove-producers-section",
+            "--out-dir",
+        ])
+        .arg(out)
+        .arg(wasm);
     run(&mut bindgen, "wasm-bindgen failed; its error is above")
 }
 
 fn optimise(build: Build, wasm: &Path) -> Result<()> {
     let before = size(wasm);
     let mut wasm_opt = command("node");
-    wasm_opt.arg("xtask/node_modules/binaryen/bin/wasm-opt").args(WASM_OPT_FEATURES);
+    wasm_opt
+        .arg("xtask/node_modules/binaryen/bin/wasm-opt")
+        .args(WASM_OPT_FEATURES);
     if build == Build::Threads {
         wasm_opt.arg("--enable-threads");
     }
     wasm_opt.arg("-O3").arg(wasm).arg("-o").arg(wasm);
     run(&mut wasm_opt, "wasm-opt failed; its error is above")?;
-    say(&format!("{}: {} kB, wasm-opt made it from {} kB", wasm.display(), size(wasm), before));
+    say(&format!(
+        "{}: {} kB, wasm-opt made it from {} kB",
+        wasm.display(),
+        size(wasm),
+        before
+    ));
     Ok(())
 }
 
@@ -149,7 +182,11 @@ mod tests {
     #[test]
     fn both_builds_have_simd() {
         for build in Build::ALL {
-            assert!(build.rust_flags().concat().contains("+simd128"), "{}", build.name());
+            assert!(
+                build.rust_flags().concat().contains("+simd128"),
+                "{}",
+                build.name()
+            );
         }
     }
 }

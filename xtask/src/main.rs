@@ -56,23 +56,27 @@ fn run(args: &[String]) -> Result<()> {
             print!("{HELP}");
             Ok(())
         }
-        other => Err(format!("no command `{other}`; `cargo xtask help` lists them")),
+        other => Err(format!(
+            "no command `{other}`; `cargo xtask help` lists them"
+        )),
     }
 }
 
 fn expect_no_options(options: &[String]) -> Result<()> {
     match options.first() {
         None => Ok(()),
-        Some(option) => Err(format!("this command takes no option `{option}`; `cargo xtask help` lists what it takes")),
+        Some(option) => Err(format!(
+            "this command takes no option `{option}`; `cargo xtask help` lists what it takes"
+        )),
     }
 }
 
 fn port(options: &[String]) -> Result<u16> {
     match options {
         [] => Ok(8080),
-        [flag, number] if flag == "--port" => {
-            number.parse().map_err(|_| format!("`--port` takes a number from 0 to 65535, not `{number}`"))
-        }
+        [flag, number] if flag == "--port" => number
+            .parse()
+            .map_err(|_| format!("`--port` takes a number from 0 to 65535, not `{number}`")),
         _ => Err("`serve` takes `--port N` and nothing else".into()),
     }
 }
@@ -93,9 +97,17 @@ mod tests {
 
     #[test]
     fn a_wrong_option_is_a_sentence() {
-        assert!(port(&strings(&["--port", "70000"])).unwrap_err().contains("70000"));
+        assert!(
+            port(&strings(&["--port", "70000"]))
+                .unwrap_err()
+                .contains("70000")
+        );
         assert!(port(&strings(&["--prot", "1"])).is_err());
         assert!(run(&strings(&["biuld"])).unwrap_err().contains("biuld"));
-        assert!(run(&strings(&["build", "--fast"])).unwrap_err().contains("--fast"));
+        assert!(
+            run(&strings(&["build", "--fast"]))
+                .unwrap_err()
+                .contains("--fast")
+        );
     }
 }

@@ -28,18 +28,26 @@ pub fn apt(packages: &[&str], what: &str, otherwise: &str) -> Result<()> {
     if find("apt-get").is_none() {
         return Err(format!("{what} is missing; {otherwise}"));
     }
-    let by_hand = format!("{what} could not be installed; run `sudo apt-get install {list}`, or {otherwise}");
+    let by_hand =
+        format!("{what} could not be installed; run `sudo apt-get install {list}`, or {otherwise}");
     let is_root = output(command("id").arg("-u")).as_deref() == Some("0");
     if !is_root && output(command("sudo").args(["-n", "true"])).is_none() {
         return Err(by_hand);
     }
     say(&format!("installing {list} with apt: {what}"));
     let apt_get = |args: &[&str]| {
-        let mut apt_get = if is_root { command("apt-get") } else { command("sudo") };
+        let mut apt_get = if is_root {
+            command("apt-get")
+        } else {
+            command("sudo")
+        };
         if !is_root {
             apt_get.arg("apt-get");
         }
-        apt_get.env("DEBIAN_FRONTEND", "noninteractive").args(["-qq", "-o", "Dpkg::Use-Pty=0"]).args(args);
+        apt_get
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .args(["-qq", "-o", "Dpkg::Use-Pty=0"])
+            .args(args);
         // What apt prints is no result of the command that is running.
         apt_get.stdout(std::io::stderr());
         apt_get
@@ -69,17 +77,23 @@ pub fn rust_component(name: &str) -> Result<()> {
 
 /// wasm-bindgen's tools, of the version that Cargo.lock gives the library.
 pub fn wasm_tools() -> Result<PathBuf> {
-    let program = root().join("target/xtask").join(format!("wasm-tools{}", env::consts::EXE_SUFFIX));
+    let program = root()
+        .join("target/xtask")
+        .join(format!("wasm-tools{}", env::consts::EXE_SUFFIX));
     if !program.is_file() {
         say("building wasm-bindgen's tools, once: about 3 minutes on 2 cores");
     }
     run(
-        cargo().args(["build", "--quiet", "--package", "xtask", "--profile", "xtask"]).args([
-            "--features",
-            "wasm-tools",
-            "--bin",
-            "wasm-tools",
-        ]),
+        cargo()
+            .args([
+                "build",
+                "--quiet",
+                "--package",
+                "xtask",
+                "--profile",
+                "xtask",
+            ])
+            .args(["--features", "wasm-tools", "--bin", "wasm-tools"]),
         "wasm-bindgen's tools did not build; their errors are above",
     )?;
     Ok(program)
@@ -99,10 +113,21 @@ pub fn npm(folder: &Path) -> Result<()> {
     if find("node").is_none() || find("npm").is_none() {
         return Err("Node and npm are missing; install Node 20 or newer from nodejs.org".into());
     }
-    say(&format!("installing what {} locks, with npm", lock.display()));
+    say(&format!(
+        "installing what {} locks, with npm",
+        lock.display()
+    ));
     let mut npm = command("npm");
-    npm.current_dir(folder).args(["ci", "--no-audit", "--no-fund", "--loglevel=error"]).stdout(std::io::stderr());
-    run(&mut npm, &format!("`npm ci` failed in {}; is the network there?", folder.display()))?;
+    npm.current_dir(folder)
+        .args(["ci", "--no-audit", "--no-fund", "--loglevel=error"])
+        .stdout(std::io::stderr());
+    run(
+        &mut npm,
+        &format!(
+            "`npm ci` failed in {}; is the network there?",
+            folder.display()
+        ),
+    )?;
     fs::create_dir_all(folder.join("node_modules"))
         .and_then(|()| fs::write(&stamp, wanted))
         .map_err(|error| format!("{} cannot be written: {error}", stamp.display()))
@@ -110,49 +135,88 @@ pub fn npm(folder: &Path) -> Result<()> {
 
 /// The browser for page tests: `CHROMIUM`, or what is found, or Debian's.
 pub fn chromium() -> Result<PathBuf> {
-    let names = ["chromium", "chromium-browser", "google-chrome-stable", "google-chrome"];
+    let names = [
+        "chromium",
+        "chromium-browser",
+        "google-chrome-stable",
+        "google-chrome",
+    ];
     let mac = ["/Applications/Google Chrome.app/Contents/MacOS/Google Chrome"];
     let found = || {
         let mac = mac.iter().map(PathBuf::from).find(|path| path.is_file());
-        named("CHROMIUM").or_else(|| names.iter().find_map(|name| find(name))).or(mac)
+        named("CHROMIUM")
+            .or_else(|| names.iter().find_map(|name| find(name)))
+            .or(mac)
     };
-    found_or_apt(found, "chromium", "Chromium", "install Chrome or Chromium, or set CHROMIUM")
+    found_or_apt(
+        found,
+        "chromium",
+        "Chromium",
+        "install Chrome or Chromium, or set CHROMIUM",
+    )
 }
 
 /// The driver for wasm tests in Chromium: `CHROMEDRIVER`, or what is found, or Debian's.
 pub fn chromedriver() -> Result<PathBuf> {
     let found = || named("CHROMEDRIVER").or_else(|| find("chromedriver"));
-    found_or_apt(found, "chromium-driver", "Chromium's driver", "install chromedriver, or set CHROMEDRIVER")
+    found_or_apt(
+        found,
+        "chromium-driver",
+        "Chromium's driver",
+        "install chromedriver, or set CHROMEDRIVER",
+    )
 }
 
 /// The driver for wasm tests in Firefox, and Firefox: `GECKODRIVER`, or what is found, or built.
 pub fn geckodriver() -> Result<PathBuf> {
-    let firefox = || find("firefox").or_else(|| find("firefox-esr")).or_else(|| {
-        Some(PathBuf::from("/Applications/Firefox.app/Contents/MacOS/firefox")).filter(|path| path.is_file())
-    });
+    let firefox = || {
+        find("firefox").or_else(|| find("firefox-esr")).or_else(|| {
+            Some(PathBuf::from(
+                "/Applications/Firefox.app/Contents/MacOS/firefox",
+            ))
+            .filter(|path| path.is_file())
+        })
+    };
     found_or_apt(firefox, "firefox-esr", "Firefox", "install Firefox")?;
     let own = root().join("target/tools");
-    let built = own.join("bin").join(format!("geckodriver{}", env::consts::EXE_SUFFIX));
-    let found = || named("GECKODRIVER").or_else(|| find("geckodriver")).or(Some(built.clone()).filter(|path| path.is_file()));
+    let built = own
+        .join("bin")
+        .join(format!("geckodriver{}", env::consts::EXE_SUFFIX));
+    let found = || {
+        named("GECKODRIVER")
+            .or_else(|| find("geckodriver"))
+            .or(Some(built.clone()).filter(|path| path.is_file()))
+    };
     if let Some(driver) = found() {
         return Ok(driver);
     }
     say("building geckodriver with cargo, once: about 3 minutes on 2 cores");
     run(
-        cargo().args(["install", "geckodriver", "--quiet", "--locked", "--root"]).arg(&own),
+        cargo()
+            .args(["install", "geckodriver", "--quiet", "--locked", "--root"])
+            .arg(&own),
         "geckodriver did not build; install it from github.com/mozilla/geckodriver and set GECKODRIVER",
     )?;
     Ok(built)
 }
 
 fn named(variable: &str) -> Option<PathBuf> {
-    env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+    env::var_os(variable)
+        .filter(|value| !value.is_empty())
+        .map(PathBuf::from)
 }
 
-fn found_or_apt(find: impl Fn() -> Option<PathBuf>, package: &str, what: &str, otherwise: &str) -> Result<PathBuf> {
+fn found_or_apt(
+    find: impl Fn() -> Option<PathBuf>,
+    package: &str,
+    what: &str,
+    otherwise: &str,
+) -> Result<PathBuf> {
     if let Some(program) = find() {
         return Ok(program);
     }
     apt(&[package], what, otherwise)?;
-    find().ok_or_else(|| format!("{what} is not where it was expected after its installation; {otherwise}"))
+    find().ok_or_else(|| {
+        format!("{what} is not where it was expected after its installation; {otherwise}")
+    })
 }

@@ -10,7 +10,10 @@ pub type Result<T> = std::result::Result<T, String>;
 /// The folder that holds the workspace.
 pub fn root() -> PathBuf {
     let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
-    xtask.parent().expect("xtask lies in the workspace").to_path_buf()
+    xtask
+        .parent()
+        .expect("xtask lies in the workspace")
+        .to_path_buf()
 }
 
 /// Says on standard error what is about to happen.
@@ -79,7 +82,11 @@ mod tests {
 
     #[test]
     fn cargo_is_found_and_runs() {
-        assert!(output(cargo().arg("--version")).unwrap().starts_with("cargo "));
+        assert!(
+            output(cargo().arg("--version"))
+                .unwrap()
+                .starts_with("cargo ")
+        );
         assert!(run(cargo().arg("--version").stdout(Stdio::null()), "").is_ok());
     }
 }

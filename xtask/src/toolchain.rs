@@ -11,8 +11,13 @@ use crate::setup;
 use crate::shell::{Result, command, find, output, run, say};
 
 /// Debian's compiler for its browsers, kept current in every release, with sources and linker.
-const DEBIAN_PACKAGES: [&str; 5] =
-    ["rustc-web", "cargo-web", "rust-web-src", "rust-web-llvm", "lld-22"];
+const DEBIAN_PACKAGES: [&str; 5] = [
+    "rustc-web",
+    "cargo-web",
+    "rust-web-src",
+    "rust-web-llvm",
+    "lld-22",
+];
 
 /// The compiler that makes wasm.
 #[derive(Debug, PartialEq)]
@@ -38,7 +43,10 @@ impl Toolchain {
             Self::Debian => {
                 let mut cargo = command("/usr/bin/cargo");
                 cargo
-                    .env("PATH", debian_first(env::var_os("PATH").unwrap_or_default()))
+                    .env(
+                        "PATH",
+                        debian_first(env::var_os("PATH").unwrap_or_default()),
+                    )
                     .env("RUSTC", "/usr/bin/rustc")
                     // Set by the cargo and rustup that run xtask, for their own compiler.
                     .env_remove("LD_LIBRARY_PATH")
@@ -62,12 +70,15 @@ impl Toolchain {
     }
 
     fn is_complete(&self) -> bool {
-        self.sysroot().is_some_and(|sysroot| has_library_sources(&sysroot))
+        self.sysroot()
+            .is_some_and(|sysroot| has_library_sources(&sysroot))
     }
 }
 
 fn has_library_sources(sysroot: &Path) -> bool {
-    sysroot.join("lib/rustlib/src/rust/library/std/Cargo.toml").is_file()
+    sysroot
+        .join("lib/rustlib/src/rust/library/std/Cargo.toml")
+        .is_file()
 }
 
 fn debian_first(path: OsString) -> OsString {
@@ -78,14 +89,23 @@ fn debian_first(path: OsString) -> OsString {
 /// The first complete one of: what is there, rustup's after it may add the sources, Debian's.
 pub fn wasm() -> Result<Toolchain> {
     let rustup = rustup_toolchains();
-    let debian = Path::new("/usr/bin/rustc").is_file().then_some(Toolchain::Debian);
-    let installed = rustup.iter().cloned().map(Toolchain::Rustup).chain([Toolchain::Path]).chain(debian);
+    let debian = Path::new("/usr/bin/rustc")
+        .is_file()
+        .then_some(Toolchain::Debian);
+    let installed = rustup
+        .iter()
+        .cloned()
+        .map(Toolchain::Rustup)
+        .chain([Toolchain::Path])
+        .chain(debian);
     if let Some(complete) = installed.into_iter().find(Toolchain::is_complete) {
         return Ok(complete);
     }
     let rustup_may = env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0");
     if let (Some(name), true) = (rustup.first(), rustup_may) {
-        say(&format!("installing rust-src for {name} with rustup: wasm builds compile std anew"));
+        say(&format!(
+            "installing rust-src for {name} with rustup: wasm builds compile std anew"
+        ));
         let add = ["component", "add", "rust-src", "--toolchain", name];
         if run(command("rustup").args(add), "rustup could not").is_ok() {
             return Ok(Toolchain::Rustup(name.clone()));
@@ -129,16 +149,23 @@ mod tests {
     #[test]
     fn the_active_toolchain_comes_first_and_once() {
         let active = "1.95-x86_64-unknown-linux-gnu (overridden by RUSTUP_TOOLCHAIN)";
-        let all = "stable-x86_64-unknown-linux-gnu (default)\n1.95-x86_64-unknown-linux-gnu (active)\n";
+        let all =
+            "stable-x86_64-unknown-linux-gnu (default)\n1.95-x86_64-unknown-linux-gnu (active)\n";
         assert_eq!(
             active_first(active, all),
-            ["1.95-x86_64-unknown-linux-gnu", "stable-x86_64-unknown-linux-gnu"]
+            [
+                "1.95-x86_64-unknown-linux-gnu",
+                "stable-x86_64-unknown-linux-gnu"
+            ]
         );
         assert_eq!(active_first("", ""), Vec::<String>::new());
     }
 
     #[test]
     fn debian_comes_first_on_path() {
-        assert_eq!(debian_first("/opt/bin:/usr/bin".into()), "/usr/bin:/opt/bin:/usr/bin");
+        assert_eq!(
+            debian_first("/opt/bin:/usr/bin".into()),
+            "/usr/bin:/opt/bin:/usr/bin"
+        );
     }
 }
