@@ -329,8 +329,7 @@ fn extreme_fuzzifiers_give_the_limits_of_section_3_2() {
     assert!((0..5).all(|i| fcm.memberships(i).iter().all(|&u| hard(u))));
     // m towards infinity: all memberships 1/c, wherever the centres are.
     let centers = [0.01, 0.03, 0.05, 0.07, 0.09].map(DVec3::splat);
-    let p = fcm.run(Start::Centers(&centers), &fuzzy(500.0, 1e-9, 1));
-    assert_sane(&p, &points);
+    fcm.run(Start::Centers(&centers), &fuzzy(500.0, 1e-9, 1));
     assert!((0..5).all(|i| fcm.memberships(i).iter().all(|&u| (u - 0.2).abs() < 0.02)));
 }
 

@@ -1,0 +1,387 @@
+//! Weighted fuzzy c-means over a whole cloud, a cell at a time, without seams.
+//!
+//! The objective is the paper's eq. 1 with a weight for each point: `Σ w_k u_ki^m |x_k - v_i|²`. Centres of weighted
+//! c-means settle with a density ∝ √(w f), f the density of the points (Gersho, "Asymptotically optimal block
+//! quantization", 1979), so `w = ρ²/f` gives the wanted density ρ whatever the scanner's own was.
+//!
+//! Cells only cut the work into pieces: a point's memberships are formed over the centres of its own cell and those of
+//! others within reach, and the sums of eq. 2 are added over cells before a centre moves. U is never stored.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+
+use crate::density::Density;
+use crate::error::Result;
+use crate::features::Features;
+use crate::octree::{Neighbor, Octree};
+use crate::par;
+use crate::power::{Fuzzifier, Power};
+use crate::progress::{Progress, Stage};
+
+/// Points handled side by side by the inner loops.
+const LANES: usize = 8;
+
+/// How far from a cell's box centres still count, in wanted spacings. Every point of the box has its nearest centre
+/// within about one spacing; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
+const REACH: f32 = 1.75;
+
+/// Added to squared distances, in units of the squared spacing: keeps ratios finite at distance zero.
+const TINY: f32 = 1e-6;
+
+/// Centres that a point is shared among once they have settled.
+pub const SHARES: usize = 4;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub struct Settling {
+    /// m of eq. 1-5.
+    pub fuzzifier: f64,
+    /// No centre moved by more than this many wanted spacings.
+    pub epsilon: f64,
+    /// Sweeps at most.
+    pub max_iterations: usize,
+}
+
+/// The centres of all cells.
+#[derive(Debug, Clone)]
+pub struct Clusters {
+    /// `v_i`, in the unit frame, cells in Morton order.
+    pub centers: Vec<Vec3>,
+    /// For every point the centres it is shared among, nearest first, and how much each has; unused places have
+    /// membership 0.
+    pub shares: Vec<Shares>,
+    /// Sweeps done.
+    pub iterations: usize,
+}
+
+/// A point's memberships in its nearest centres; they add up to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// Centres, nearest first.
+    pub center: [u32; SHARES],
+    /// Memberships.
+    pub u: [f32; SHARES],
+}
+
+/// One cell: its points, and the centres within their reach.
+struct Cell {
+    points: Range<usize>,
+    /// Middle of the box and mean wanted spacing: coordinates inside are (x - origin) / unit.
+    origin: Vec3,
+    unit: f32,
+    reach: Vec<u32>,
+}
+
+/// The points of one cell, structure of arrays padded to whole lanes with weight 0, and rows of one block.
+#[derive(Default)]
+struct Scratch {
+    x: [Vec<f32>; 3],
+    weight: Vec<f32>,
+    centers: Vec<Vec3>,
+    share: Vec<[f32; LANES]>,
+    sums: Vec<[[f32; LANES]; 4]>,
+}
+
+/// Clusters the cloud: `quotas[i]` centres start in `cells[i]`.
+pub fn cluster(
+    tree: &Octree,
+    features: &Features,
+    density: &Density,
+    (ranges, quotas): (&[Range<usize>], &[usize]),
+    settling: &Settling,
+    progress: &mut dyn Progress,
+) -> Result<Clusters> {
+    let mut centers = start(tree, density, ranges, quotas);
+    let mut cells: Vec<Cell> = ranges
+        .iter()
+        .map(|range| Cell::new(tree, density, range.clone()))
+        .collect();
+    let mut iterations = 0;
+    while iterations < settling.max_iterations {
+        progress.update(
+            Stage::Cluster,
+            iterations as f32 / settling.max_iterations as f32,
+        )?;
+        // The start is uneven; after two sweeps centres hardly leave a cell's reach any more.
+        if iterations == 0 || iterations == 2 {
+            gather(&mut cells, &centers, tree, density);
+        }
+        let moved = match Fuzzifier::new(settling.fuzzifier) {
+            Fuzzifier::Two(power) => sweep(power, tree, features, density, &cells, &mut centers),
+            Fuzzifier::ThreeHalves(power) => {
+                sweep(power, tree, features, density, &cells, &mut centers)
+            }
+            Fuzzifier::FiveQuarters(power) => {
+                sweep(power, tree, features, density, &cells, &mut centers)
+            }
+            Fuzzifier::Any(power) => sweep(power, tree, features, density, &cells, &mut centers),
+        };
+        iterations += 1;
+        if moved < settling.epsilon {
+            break;
+        }
+    }
+    gather(&mut cells, &centers, tree, density);
+    let shares = par::map(
+        cells.len(),
+        || (),
+        |i, _| {
+            let cell = &cells[i];
+            let of = |k| {
+                Shares::of(
+                    tree.points[k],
+                    &centers,
+                    cell.reach.iter().copied(),
+                    settling.fuzzifier,
+                )
+            };
+            cell.points.clone().map(of).collect::<Vec<Shares>>()
+        },
+    );
+    Ok(Clusters {
+        centers,
+        shares: shares.concat(),
+        iterations,
+    })
+}
+
+impl Cell {
+    fn new(tree: &Octree, density: &Density, points: Range<usize>) -> Cell {
+        let (mut lo, mut hi, mut unit) = (Vec3::INFINITY, Vec3::NEG_INFINITY, 0.0);
+        for k in points.clone() {
+            lo = lo.min(tree.points[k]);
+            hi = hi.max(tree.points[k]);
+            unit += density.spacing[k];
+        }
+        Cell {
+            origin: 0.5 * (lo + hi),
+            unit: (unit / points.len() as f32).max(f32::MIN_POSITIVE),
+            points,
+            reach: Vec::new(),
+        }
+    }
+
+    fn half_extent(&self, tree: &Octree) -> Vec3 {
+        let far = |p: &Vec3| (*p - self.origin).abs();
+        tree.points[self.points.clone()]
+            .iter()
+            .map(far)
+            .fold(Vec3::ZERO, Vec3::max)
+    }
+}
+
+/// Farthest-first traversal in every cell, in units of the wanted spacing (Gonzalez, "Clustering to minimize the
+/// maximum intercluster distance", 1985): deterministic, and at four iterations 20-25 % less error than random starts.
+fn start(tree: &Octree, density: &Density, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
+    let chosen = par::map(ranges.len(), Vec::new, |i, far: &mut Vec<f32>| {
+        let points = &tree.points[ranges[i].clone()];
+        let spacing = &density.spacing[ranges[i].clone()];
+        let mean = points.iter().sum::<Vec3>() / points.len() as f32;
+        far.clear();
+        far.extend(points.iter().map(|p| p.distance_squared(mean)));
+        let mut next = lowest(far);
+        far.fill(f32::INFINITY);
+        let mut chosen = Vec::with_capacity(quotas[i]);
+        while chosen.len() < quotas[i] {
+            chosen.push(points[next]);
+            // Taken points fall below all others, so that equal points are taken one by one.
+            far[next] = -1.0;
+            for (k, f) in far.iter_mut().enumerate() {
+                *f = f.min(points[k].distance_squared(points[next]) / (spacing[k] * spacing[k]));
+            }
+            next = highest(far);
+        }
+        chosen
+    });
+    chosen.concat()
+}
+
+fn lowest(values: &[f32]) -> usize {
+    (0..values.len())
+        .min_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0)
+}
+
+fn highest(values: &[f32]) -> usize {
+    // The first of equals.
+    (0..values.len())
+        .rev()
+        .max_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0)
+}
+
+/// Finds the centres within each cell's reach, in ascending order; at least the nearest one.
+fn gather(cells: &mut [Cell], centers: &[Vec3], tree: &Octree, density: &Density) {
+    let index = Octree::build(centers);
+    let reaches = par::map(cells.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
+        let cell = &cells[i];
+        let widest = density.spacing[cell.points.clone()]
+            .iter()
+            .fold(0.0f32, |a, &b| a.max(b));
+        let half = cell.half_extent(tree) + REACH * widest;
+        index.within(cell.origin, half.length(), found);
+        let inside = |n: &&Neighbor| {
+            (index.points[n.index as usize] - cell.origin)
+                .abs()
+                .cmple(half)
+                .all()
+        };
+        let mut reach: Vec<u32> = found
+            .iter()
+            .filter(inside)
+            .map(|n| index.order[n.index as usize])
+            .collect();
+        if reach.is_empty() {
+            reach.push(index.order[index.nearest(cell.origin).index as usize]);
+        }
+        reach.sort_unstable();
+        reach
+    });
+    for (cell, reach) in cells.iter_mut().zip(reaches) {
+        cell.reach = reach;
+    }
+}
+
+/// One pass of eq. 5 and eq. 2 over all cells. Returns the largest movement, in wanted spacings.
+fn sweep<P: Power<f32> + Send + Sync>(
+    power: P,
+    tree: &Octree,
+    features: &Features,
+    density: &Density,
+    cells: &[Cell],
+    centers: &mut [Vec3],
+) -> f64 {
+    let parts = par::map(cells.len(), Scratch::default, |i, scratch| {
+        let cell = &cells[i];
+        scratch.load(tree, features, density, cell, centers);
+        scratch.accumulate(power);
+        let total = |sums: &[[f32; LANES]; 4]| sums.map(|lanes| lanes.iter().sum());
+        scratch.sums.iter().map(total).collect::<Vec<[f32; 4]>>()
+    });
+    // Sums of Σ w, Σ w (x - v): the movement is small against the position.
+    let mut sums = vec![(0.0f64, DVec3::ZERO, 0.0f64); centers.len()];
+    for (cell, part) in cells.iter().zip(parts) {
+        for (&i, [w, x, y, z]) in cell.reach.iter().zip(part) {
+            let local = (centers[i as usize] - cell.origin).as_dvec3();
+            let (w, unit) = (f64::from(w), f64::from(cell.unit));
+            let sum = &mut sums[i as usize];
+            sum.0 += w;
+            sum.1 += DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * unit - w * local;
+            sum.2 += w * unit;
+        }
+    }
+    let mut moved = 0.0f64;
+    for (center, (w, dx, unit)) in centers.iter_mut().zip(sums) {
+        if w > 0.0 {
+            let step = dx / w;
+            moved = moved.max(step.length() * w / unit);
+            *center = (center.as_dvec3() + step).as_vec3();
+        }
+    }
+    moved
+}
+
+impl Scratch {
+    fn load(
+        &mut self,
+        tree: &Octree,
+        features: &Features,
+        density: &Density,
+        cell: &Cell,
+        centers: &[Vec3],
+    ) {
+        let n = cell.points.len();
+        let padded = n.div_ceil(LANES) * LANES;
+        let local = |p: Vec3| (p - cell.origin) / cell.unit;
+        for x in &mut self.x {
+            x.clear();
+        }
+        self.weight.clear();
+        for k in cell.points.clone() {
+            let p = local(tree.points[k]);
+            self.x[0].push(p.x);
+            self.x[1].push(p.y);
+            self.x[2].push(p.z);
+            // w = ρ²/f with ρ = 1/h² and 1/f the area of surface that the point stands for.
+            let h2 = (density.spacing[k] / cell.unit).powi(2);
+            let area = (features.spacing[k] / cell.unit).powi(2);
+            self.weight.push(area / (h2 * h2));
+        }
+        for x in &mut self.x {
+            x.resize(padded, 0.0);
+        }
+        self.weight.resize(padded, 0.0);
+        self.centers.clear();
+        self.centers
+            .extend(cell.reach.iter().map(|&i| local(centers[i as usize])));
+        self.share.resize(cell.reach.len(), [0.0; LANES]);
+        self.sums.clear();
+        self.sums.resize(cell.reach.len(), [[0.0; LANES]; 4]);
+    }
+
+    /// Memberships of eq. 5 block by block, summed for eq. 2 as they come.
+    fn accumulate<P: Power<f32>>(&mut self, power: P) {
+        for block in (0..self.weight.len()).step_by(LANES) {
+            let lanes = |v: &[f32]| -> [f32; LANES] { std::array::from_fn(|l| v[block + l]) };
+            let [x, y, z] = [lanes(&self.x[0]), lanes(&self.x[1]), lanes(&self.x[2])];
+            let weight = lanes(&self.weight);
+
+            let mut nearest = [f32::INFINITY; LANES];
+            for (distance, v) in self.share.iter_mut().zip(&self.centers) {
+                for l in 0..LANES {
+                    let (dx, dy, dz) = (x[l] - v.x, y[l] - v.y, z[l] - v.z);
+                    distance[l] = dx * dx + dy * dy + dz * dz + TINY;
+                    nearest[l] = nearest[l].min(distance[l]);
+                }
+            }
+            let mut total = [0.0; LANES];
+            for share in &mut self.share {
+                for l in 0..LANES {
+                    share[l] = power.share(nearest[l] / share[l]);
+                    total[l] += share[l];
+                }
+            }
+            for (share, sums) in self.share.iter().zip(&mut self.sums) {
+                for l in 0..LANES {
+                    let w = weight[l] * power.raise(share[l] / total[l]);
+                    sums[0][l] += w;
+                    sums[1][l] += w * x[l];
+                    sums[2][l] += w * y[l];
+                    sums[3][l] += w * z[l];
+                }
+            }
+        }
+    }
+}
+
+impl Shares {
+    /// Eq. 5 over the nearest centres of `reach` only.
+    pub fn of(p: Vec3, centers: &[Vec3], reach: impl Iterator<Item = u32>, m: f64) -> Shares {
+        let mut nearest = [(f32::INFINITY, 0); SHARES];
+        for i in reach {
+            let d = p.distance_squared(centers[i as usize]);
+            if d < nearest[SHARES - 1].0 {
+                let mut at = SHARES - 1;
+                while at > 0 && d < nearest[at - 1].0 {
+                    nearest[at] = nearest[at - 1];
+                    at -= 1;
+                }
+                nearest[at] = (d, i);
+            }
+        }
+        let closest = nearest[0].0;
+        let u = nearest.map(|(d, _)| {
+            if d == closest {
+                1.0
+            } else {
+                libm::pow(f64::from(closest) / f64::from(d), 1.0 / (m - 1.0))
+            }
+        });
+        let total: f64 = u.iter().sum();
+        Shares {
+            center: nearest.map(|(_, i)| i),
+            u: u.map(|u| (u / total) as f32),
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! From clusters to reduced points: where each centre goes and what it carries.
+//!
+//! A cluster centre (eq. 2) is a mean, and sinks below a curved surface by about κh²/4π. With a matrix `A` of its own
+//! for each point, `A_k = n_k n_kᵀ + τI`, eq. 1 measures distances to the tangent planes, and the centre that minimises
+//! it, `v = (Σ u^m A_k)⁻¹ Σ u^m A_k x_k`, lands as far outside and exactly on creases and corners.
+//! Half-way between the two lies on the surface (to third order).
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3, Vec3};
+
+use crate::cloud::{Attribute, Cloud};
+use crate::clusters::{SHARES, Shares};
+use crate::features::Features;
+use crate::linalg::sym_eigen;
+use crate::octree::Octree;
+use crate::par;
+use crate::params::Placement;
+
+/// τ of A_k: how much a distance along the surface counts against one across it.
+const TAU: f64 = 0.03;
+
+/// Second eigenvalue of the mean of n nᵀ (0 on a plane, ½ on a right-angled edge) from which a centre is on a crease,
+/// and from which it is so for sure.
+const CREASE: Range<f64> = 0.05..0.15;
+
+/// The members of every cluster: points, and their memberships.
+#[derive(Debug, Clone)]
+pub struct Members {
+    first: Vec<u32>,
+    of: Vec<(u32, f32)>,
+}
+
+impl Members {
+    /// Turns memberships by point into memberships by centre.
+    pub fn new(shares: &[Shares], centers: usize) -> Members {
+        let mut first = vec![0u32; centers + 1];
+        let used = |s: &Shares| {
+            (0..SHARES)
+                .map(|j| (s.center[j], s.u[j]))
+                .collect::<Vec<_>>()
+        };
+        for s in shares {
+            for (i, _) in used(s).into_iter().filter(|&(_, u)| u > 0.0) {
+                first[i as usize + 1] += 1;
+            }
+        }
+        for i in 0..centers {
+            first[i + 1] += first[i];
+        }
+        let mut next = first.clone();
+        let mut of = vec![(0, 0.0); first[centers] as usize];
+        for (k, s) in shares.iter().enumerate() {
+            for (i, u) in used(s).into_iter().filter(|&(_, u)| u > 0.0) {
+                of[next[i as usize] as usize] = (k as u32, u);
+                next[i as usize] += 1;
+            }
+        }
+        Members { first, of }
+    }
+
+    /// The members of centre `i`, in the octree's order.
+    pub fn of(&self, i: usize) -> &[(u32, f32)] {
+        &self.of[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+}
+
+/// A reduced point, without what the caller attached.
+#[derive(Debug, Clone, Copy)]
+pub struct Placed {
+    /// In the unit frame.
+    pub position: Vec3,
+    /// Unit, of arbitrary sign; zero where the members have none.
+    pub normal: Vec3,
+    /// √(area that it stands for).
+    pub spacing: f32,
+    /// Membership-weighted mean.
+    pub variation: f32,
+}
+
+/// Places every centre.
+pub fn place(
+    tree: &Octree,
+    features: &Features,
+    centers: &[Vec3],
+    members: &Members,
+    (placement, m): (Placement, f64),
+) -> Vec<Placed> {
+    par::map(
+        centers.len(),
+        || (),
+        |i, ()| {
+            let mut sums = Sums::default();
+            for &(k, u) in members.of(i) {
+                sums.add(tree, features, k as usize, u, m);
+            }
+            sums.place(centers[i], placement)
+        },
+    )
+}
+
+/// Sums over the members of one cluster, relative to its first member.
+#[derive(Default)]
+struct Sums {
+    origin: DVec3,
+    weight: f64,
+    position: DVec3,
+    /// Σ n nᵀ, and Σ n nᵀ x.
+    normals: [f64; 6],
+    planes: DVec3,
+    area: f64,
+    membership: f64,
+    variation: f64,
+}
+
+impl Sums {
+    fn add(&mut self, tree: &Octree, features: &Features, k: usize, u: f32, m: f64) {
+        let u = f64::from(u);
+        let n = features.normals[k].as_dvec3();
+        let x = tree.points[k].as_dvec3();
+        if self.membership == 0.0 {
+            self.origin = x;
+        }
+        let x = x - self.origin;
+        let area = f64::from(features.spacing[k]).powi(2);
+        let w = libm::pow(u, m) * area.max(f64::MIN_POSITIVE);
+        self.weight += w;
+        self.position += w * x;
+        let products = [
+            n.x * n.x,
+            n.x * n.y,
+            n.x * n.z,
+            n.y * n.y,
+            n.y * n.z,
+            n.z * n.z,
+        ];
+        for (sum, product) in self.normals.iter_mut().zip(products) {
+            *sum += w * product;
+        }
+        self.planes += w * n.dot(x) * n;
+        self.area += u * area;
+        self.membership += u;
+        self.variation += u * f64::from(features.variation[k]);
+    }
+
+    fn place(&self, center: Vec3, placement: Placement) -> Placed {
+        if self.weight == 0.0 {
+            return Placed {
+                position: center,
+                normal: Vec3::ZERO,
+                spacing: 0.0,
+                variation: 0.0,
+            };
+        }
+        let mean = self.position / self.weight;
+        let tensor = self.normals.map(|t| t / self.weight);
+        let eigen = sym_eigen(&tensor);
+        let normal = if eigen.values[2] > 0.0 {
+            eigen.vectors[2]
+        } else {
+            DVec3::ZERO
+        };
+        let spacing = self.area.sqrt();
+        let position = match placement {
+            Placement::Center | Placement::Sample => center.as_dvec3(),
+            Placement::Mesh | Placement::Implicit => {
+                let [xx, xy, xz, yy, yz, zz] = tensor;
+                let a = DMat3::from_cols(
+                    DVec3::new(xx + TAU, xy, xz),
+                    DVec3::new(xy, yy + TAU, yz),
+                    DVec3::new(xz, yz, zz + TAU),
+                );
+                let offset = self.planes / self.weight - (a * mean - TAU * mean);
+                let step = (a.inverse() * offset).clamp_length_max(spacing);
+                let crease = ((eigen.values[1] - CREASE.start) / (CREASE.end - CREASE.start))
+                    .clamp(0.0, 1.0);
+                let on_surface = 0.5 * normal.dot(step) * normal;
+                let part = if placement == Placement::Mesh {
+                    step
+                } else {
+                    on_surface.lerp(step, crease)
+                };
+                self.origin + mean + part
+            }
+        };
+        Placed {
+            position: position.as_vec3(),
+            normal: normal.as_vec3(),
+            spacing: spacing as f32,
+            variation: (self.variation / self.membership) as f32,
+        }
+    }
+}
+
+/// The reduced cloud's colours, scalars and normal signs: membership-weighted means of the input's.
+pub fn carry(cloud: &Cloud, tree: &Octree, members: &Members, placed: &[Placed]) -> Cloud {
+    let input = |k: u32| tree.order[k as usize] as usize;
+    let mean = |i: usize, value: &dyn Fn(usize) -> f64| -> f64 {
+        let (mut sum, mut total) = (0.0, 0.0);
+        for &(k, u) in members.of(i) {
+            sum += f64::from(u) * value(input(k));
+            total += f64::from(u);
+        }
+        if total > 0.0 { sum / total } else { 0.0 }
+    };
+    let each = 0..placed.len();
+    let colors = cloud.colors.as_ref().map(|colors| {
+        let of = |i| [0, 1, 2].map(|c| mean(i, &|k| f64::from(colors[k][c])).round() as u8);
+        each.clone().map(of).collect()
+    });
+    let attributes = cloud.attributes.iter().map(|a| Attribute {
+        name: a.name.clone(),
+        values: each
+            .clone()
+            .map(|i| mean(i, &|k| f64::from(a.values[k])) as f32)
+            .collect(),
+    });
+    let signed = |i: usize| {
+        let n = placed[i].normal;
+        let along = |given: &Vec<Vec3>| mean(i, &|k| f64::from(given[k].dot(n)));
+        if cloud.normals.as_ref().map_or(1.0, along) < 0.0 {
+            -n
+        } else {
+            n
+        }
+    };
+    Cloud {
+        points: placed.iter().map(|p| p.position).collect(),
+        frame: cloud.frame,
+        colors,
+        normals: Some(each.clone().map(signed).collect()),
+        attributes: attributes.collect(),
+        origin: cloud.origin,
+    }
+}

@@ -1,0 +1,266 @@
+//! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::cloud::Cloud;
+use crate::clusters::{self, SHARES, Settling, Shares};
+use crate::density::{self, Density};
+use crate::error::Result;
+use crate::features::Features;
+use crate::octree::{Neighbor, Octree};
+use crate::paper;
+use crate::par;
+use crate::params::{Method, Placement, ReduceParams, Target};
+use crate::placement::{self, Members};
+use crate::progress::{Progress, Stage};
+
+/// A reduced cloud. Every array has one entry a reduced point.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// Positions, unit normals (signs of the input's normals where it had them, else arbitrary), colours and scalars, in
+    /// the input's unit frame.
+    pub cloud: Cloud,
+    /// √(area that a point stands for), in the unit frame.
+    pub spacing: Vec<f32>,
+    /// Surface variation λ0/(λ0+λ1+λ2) of the input around the point.
+    pub variation: Vec<f32>,
+    /// Input points for which this is the nearest centre; adds up to the input's count.
+    pub weights: Vec<f32>,
+    /// Index of the nearest input point.
+    pub nearest: Vec<u32>,
+    /// What the clustering did.
+    pub stats: ReduceStats,
+}
+
+/// Figures of one reduction.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReduceStats {
+    /// Sub-domains.
+    pub cells: usize,
+    /// Sweeps of steps (b) and (c); the most that any sub-domain took.
+    pub iterations: usize,
+    /// J of eq. 1, Σ u^m |x - v|² over the nearest centres, in squared diagonals.
+    pub objective: f64,
+    /// Validity index χ of eq. 7; 0 with fewer than two centres or with coincident ones.
+    pub validity: f64,
+    /// Coefficient of variation of (distance of a reduced point to its nearest / wanted spacing); 0 is perfectly even.
+    pub evenness: f64,
+    /// Input points that were kept as they are (the paper's "typical data with sharp feature").
+    pub kept: usize,
+}
+
+/// Cluster centres and how the points are shared among them, in the octree's order: what both methods hand on.
+#[derive(Debug, Clone)]
+pub struct Clustering {
+    /// Centres, in the unit frame.
+    pub centers: Vec<Vec3>,
+    /// Memberships of every point in its nearest centres.
+    pub shares: Vec<Shares>,
+    /// Wanted spacing at every point.
+    pub spacing: Vec<f32>,
+    /// Sub-domains.
+    pub cells: usize,
+    /// Sweeps.
+    pub iterations: usize,
+    /// Points kept as they are.
+    pub kept: usize,
+}
+
+/// Reduces a cloud of at least one point.
+///
+/// # Errors
+/// [`crate::Error::BadOption`], [`crate::Error::Cancelled`].
+pub fn reduce(
+    cloud: &Cloud,
+    tree: &Octree,
+    features: &Features,
+    params: &ReduceParams,
+    progress: &mut dyn Progress,
+) -> Result<Reduced> {
+    params.validate()?;
+    let m = fuzzifier(params);
+    let clustering = match (params.method, count(params.target, tree, features)) {
+        (_, Some(count)) if count == cloud.len() => keep_all(tree, features),
+        (Method::Paper, count) => paper::cluster(tree, features, count, params, progress)?,
+        (Method::Adaptive, count) => adaptive(
+            tree,
+            features,
+            count.unwrap_or(cloud.len()),
+            params,
+            progress,
+        )?,
+    };
+    progress.update(Stage::Place, 0.0)?;
+    let placement = match params.placement {
+        Placement::Sample => Placement::Sample,
+        _ if params.method == Method::Paper || clustering.centers.len() == cloud.len() => {
+            Placement::Center
+        }
+        other => other,
+    };
+    let members = Members::new(&clustering.shares, clustering.centers.len());
+    let placed = placement::place(
+        tree,
+        features,
+        &clustering.centers,
+        &members,
+        (placement, m),
+    );
+    progress.update(Stage::Place, 0.5)?;
+    let reduced = placement::carry(cloud, tree, &members, &placed);
+    let nearest = par::map(
+        placed.len(),
+        || (),
+        |i, ()| tree.order[tree.nearest(placed[i].position).index as usize],
+    );
+    let mut weights = vec![0.0; placed.len()];
+    for s in &clustering.shares {
+        weights[s.center[0] as usize] += 1.0;
+    }
+    let stats = stats(tree, &clustering, m);
+    progress.update(Stage::Place, 1.0)?;
+    Ok(Reduced {
+        cloud: reduced,
+        spacing: placed.iter().map(|p| p.spacing).collect(),
+        variation: placed.iter().map(|p| p.variation).collect(),
+        weights,
+        nearest,
+        stats,
+    })
+}
+
+/// m of eq. 1-5, by default the method's.
+fn fuzzifier(params: &ReduceParams) -> f64 {
+    params.fuzzifier.unwrap_or(match params.method {
+        Method::Adaptive => 1.5,
+        Method::Paper => 2.0,
+    })
+}
+
+/// The exact number of reduced points, or `None` where flatness decides.
+fn count(target: Target, tree: &Octree, features: &Features) -> Option<usize> {
+    let n = tree.points.len();
+    match target {
+        Target::Ratio(ratio) => Some(((n as f64 * ratio).round() as usize).clamp(1, n)),
+        Target::Count(count) => Some(count.min(n)),
+        Target::Tolerance(tolerance) => Some(count_for_tolerance(tolerance, features).clamp(1, n)),
+        Target::Flatness(_) => None,
+    }
+}
+
+/// A chord of length h over curvature κ is off by κh²/8, so h = √(8ε/κ); the count is the area over h².
+fn count_for_tolerance(tolerance: f64, features: &Features) -> usize {
+    let pairs = features.spacing.iter().zip(&features.curvature);
+    let share = |(&s, &k): (&f32, &f32)| f64::from(s).powi(2) * f64::from(k) / (8.0 * tolerance);
+    pairs.map(share).sum::<f64>().ceil() as usize
+}
+
+fn keep_all(tree: &Octree, features: &Features) -> Clustering {
+    let alone = |i: u32| Shares {
+        center: [i; SHARES],
+        u: std::array::from_fn(|j| if j == 0 { 1.0 } else { 0.0 }),
+    };
+    let n = tree.points.len();
+    Clustering {
+        centers: tree.points.clone(),
+        shares: (0..n as u32).map(alone).collect(),
+        spacing: features.spacing.clone(),
+        cells: 0,
+        iterations: 0,
+        kept: n,
+    }
+}
+
+/// Points of a cell so that it holds about 32 centres: enough to hide the cell's border, few enough that a point meets
+/// few centres that are too far to matter.
+fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
+    params
+        .cell_points
+        .unwrap_or((32 * n / count).clamp(64, 512))
+}
+
+fn adaptive(
+    tree: &Octree,
+    features: &Features,
+    count: usize,
+    params: &ReduceParams,
+    progress: &mut dyn Progress,
+) -> Result<Clustering> {
+    let density = Density::new(tree, features, count, params.curvature_weight);
+    let capacity = cell_points(count, tree.points.len(), params);
+    let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
+    let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let settling = Settling {
+        fuzzifier: fuzzifier(params),
+        epsilon: params.epsilon.unwrap_or(1e-2),
+        max_iterations: params.max_iterations.unwrap_or(8),
+    };
+    let clusters = clusters::cluster(
+        tree,
+        features,
+        &density,
+        (&cells, &quotas),
+        &settling,
+        progress,
+    )?;
+    Ok(Clustering {
+        centers: clusters.centers,
+        shares: clusters.shares,
+        spacing: density.spacing,
+        cells: cells.len(),
+        iterations: clusters.iterations,
+        kept: 0,
+    })
+}
+
+fn stats(tree: &Octree, clustering: &Clustering, m: f64) -> ReduceStats {
+    let centers = &clustering.centers;
+    let mut objective = 0.0;
+    for (p, s) in tree.points.iter().zip(&clustering.shares) {
+        for (&i, &u) in s.center.iter().zip(&s.u).filter(|&(_, &u)| u > 0.0) {
+            objective +=
+                libm::pow(f64::from(u), m) * f64::from(p.distance_squared(centers[i as usize]));
+        }
+    }
+    let index = Octree::build(centers);
+    let apart = par::map(centers.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
+        index.knn(index.points[i], 2, found);
+        found.get(1).map_or(0.0, |n| f64::from(n.distance2))
+    });
+    let mut wanted = vec![(0.0, 0u32); centers.len()];
+    for (s, &h) in clustering.shares.iter().zip(&clustering.spacing) {
+        let (sum, n) = &mut wanted[s.center[0] as usize];
+        *sum += f64::from(h);
+        *n += 1;
+    }
+    let relative = apart.iter().zip(&index.order).filter_map(|(d2, &i)| {
+        let (sum, n) = wanted[i as usize];
+        (sum > 0.0).then(|| d2.sqrt() * f64::from(n) / sum)
+    });
+    let separation = apart.iter().copied().fold(f64::INFINITY, f64::min);
+    ReduceStats {
+        cells: clustering.cells,
+        iterations: clustering.iterations,
+        objective,
+        validity: if centers.len() > 1 && separation > 0.0 {
+            objective / (centers.len() as f64 * separation)
+        } else {
+            0.0
+        },
+        evenness: coefficient_of_variation(&relative.collect::<Vec<f64>>()),
+        kept: clustering.kept,
+    }
+}
+
+fn coefficient_of_variation(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n;
+    if mean > 0.0 {
+        variance.sqrt() / mean
+    } else {
+        0.0
+    }
+}
