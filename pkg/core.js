@@ -3,73 +3,67 @@
  * own thread.
  */
 import { PointweaveError, fromTrap } from './errors.js';
+import { track } from './progress.js';
 
 /** @import { Build, Progress } from './types.js' */
 
 /**
- * What the wasm instance computes, by name, with its arguments as `src/wasm.rs` takes them.
+ * A function of `src/wasm.rs` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample'} call
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
 /**
  * The module that wasm-bindgen writes, as far as it is used here.
  * @typedef {{
- *   default: (from: { module_or_path: WebAssembly.Module }) => Promise<{ memory: WebAssembly.Memory }>,
- *   initThreadPool?: (threads: number) => Promise<unknown>,
- *   stopThreadPool?: () => void,
+ *   default: (from: { module_or_path: WebAssembly.Module, memory?: WebAssembly.Memory }) => Promise<{ memory: WebAssembly.Memory }>,
  *   panicMessage: () => string,
- * } & Record<Request['call'], (...args: unknown[]) => unknown>} Glue
+ * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
  */
 
 /**
  * @typedef {object} CoreOptions
  * @property {Build} build
- * @property {number} threads size of the pool; 1 for the single-threaded build
  * @property {WebAssembly.Module} module the compiled wasm of that build
+ * @property {WebAssembly.Memory} [memory] another instance's, for a thread of its pool
  */
 
 export class Core {
   /** @type {Glue} */
   #glue;
 
-  /** Becomes true when the instance died; it must not be called again. */
-  broken = false;
-
-  /** @param {Glue} glue */
-  constructor(glue) {
+  /**
+   * @param {Glue} glue an instance of its own, started
+   * @param {WebAssembly.Memory} memory
+   */
+  constructor(glue, memory) {
     this.#glue = glue;
+    this.memory = memory;
   }
 
   /**
-   * @param {Glue} glue an instance of its own
+   * @param {Glue} glue
    * @param {CoreOptions} options
    */
-  static async start(glue, { build, threads, module }) {
-    await glue.default({ module_or_path: module });
-    if (build === 'threads') await glue.initThreadPool?.(threads);
-    return new Core(glue);
+  static async start(glue, { module, memory }) {
+    const exports = await glue.default({ module_or_path: module, memory });
+    return new Core(glue, exports.memory);
   }
 
   /**
    * @param {Request} request
-   * @param {(progress: Progress) => boolean} onProgress its answer true stops the work
+   * @param {(progress: Progress) => boolean} listener its answer true stops the work
    * @returns {any} what the call gives; arrays in it belong to the caller
    */
-  run({ call, args }, onProgress) {
-    let last = 0;
-    /** @type {(stage: Progress['stage'], fraction: number, overall: number) => boolean} */
-    const report = (stage, fraction, overall) => {
-      last = Math.max(last, Math.min(overall, 1));
-      return onProgress({ stage, fraction, overall: last });
-    };
+  run({ call, args }, listener) {
+    const progress = track(call, listener);
     try {
-      return this.#glue[call](...args, report);
+      const result = this.#glue[call]?.(...args, progress.update);
+      progress.finish();
+      return result;
     } catch (thrown) {
-      if (isRecord(thrown)) throw new PointweaveError(thrown);
-      this.broken = true;
-      throw fromTrap(thrown, this.#panic());
+      throw isRecord(thrown) ? new PointweaveError(thrown) : fromTrap(thrown, this.#panic());
     }
   }
 

@@ -14,9 +14,9 @@ import { checkEngineOptions, checkOptions } from './options.js';
 /**
  * What differs between a browser and Node.
  * @typedef {object} Platform
- * @property {boolean} worker whether an engine has a worker unless it is told
+ * @property {boolean} worker whether the single-threaded build gets a worker unless it is told
  * @property {() => number} cores
- * @property {(worker: boolean) => { possible: boolean, reason: string }} threads whether threads can run here, and why
+ * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
  * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
  * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
  * @property {() => WorkerLike} startWorker
@@ -30,7 +30,7 @@ export class Engine {
   #platform;
   #worker;
   #wasmUrl;
-  /** @type {{ build: Build, threads: number, reason: string }} */
+  /** What computes, and why. @type {ReturnType<typeof chooseBuild>} */
   #choice;
   /** Ends when the last call of the queue has. @type {Promise<unknown>} */
   #tail = Promise.resolve();
@@ -44,7 +44,7 @@ export class Engine {
    * @param {EngineOptions} [options]
    */
   constructor(platform, options) {
-    const { threads = 'auto', worker = platform.worker, wasmUrl } = checkEngineOptions(options);
+    const { threads = 'auto', worker, wasmUrl } = checkEngineOptions(options);
     this.#platform = platform;
     this.#worker = worker;
     this.#wasmUrl = wasmUrl;
@@ -157,7 +157,9 @@ export class Engine {
    * @param {any} value
    */
   #signed(value) {
-    for (const report of [value.report, value.cloud?.report]) if (report) Object.assign(report, this.#choice);
+    for (const report of [value.report, value.cloud?.report]) {
+      if (report) Object.assign(report, this.#choice, { reason: [this.reason, report.reason].filter(Boolean).join('; ') });
+    }
     return value;
   }
 
@@ -176,24 +178,27 @@ export class Engine {
 
   async #startBuild() {
     const { build, threads } = this;
-    const module = await this.#platform.compile(build, this.#wasmUrl);
-    const options = { build, threads, module };
-    return this.#worker
-      ? workerHost(this.#platform.startWorker(), options)
-      : inProcessHost(await this.#platform.loadGlue(build), options);
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await compile(build, this.#wasmUrl);
+    return build === 'threads' || (this.#worker ?? worker)
+      ? workerHost(startWorker, { build, threads, module })
+      : inProcessHost(await loadGlue(build), { build, module });
   }
 }
 
 /**
+ * Threads need a worker: who waits for them must not be the caller's thread, which could then neither abort nor hear
+ * that one of them died.
  * @param {Platform} platform
  * @param {'auto' | number} threads
- * @param {boolean} worker
+ * @param {boolean} [worker]
  * @returns {{ build: Build, threads: number, reason: string }}
  */
 function chooseBuild(platform, threads, worker) {
   const single = /** @type {const} */ ({ build: 'single', threads: 1 });
   if (threads === 1) return { ...single, reason: 'one thread was asked for' };
-  const { possible, reason } = platform.threads(worker);
+  if (worker === false) return { ...single, reason: 'threads need a worker' };
+  const { possible, reason } = platform.threads();
   if (!possible) return { ...single, reason };
   const wanted = threads === 'auto' ? Math.min(platform.cores(), MOST_AUTO_THREADS) : threads;
   if (wanted === 1) return { ...single, reason: 'there is one processor core' };

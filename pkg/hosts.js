@@ -1,5 +1,6 @@
 /**
- * Where an engine's work is done: in this thread or in a worker. A host takes one request at a time.
+ * Where an engine's work is done: in this thread, or in a worker with or without more that lend it
+ * their threads. A host takes one request at a time.
  */
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
@@ -7,6 +8,7 @@ import { buffersOf } from './serve.js';
 
 /** @import { Build, Progress } from './types.js' */
 /** @import { CoreOptions, Glue, Request } from './core.js' */
+/** @import { FromWorker, ToWorker } from './serve.js' */
 
 /**
  * @typedef {object} Watch
@@ -24,8 +26,8 @@ import { buffersOf } from './serve.js';
 /**
  * A worker of either kind, browser or Node, as far as it is used here.
  * @typedef {object} WorkerLike
- * @property {(message: import('./serve.js').ToWorker, transfer?: ArrayBuffer[]) => void} post
- * @property {(receive: (message: import('./serve.js').FromWorker) => void, fail: (why: string) => void) => void} listen
+ * @property {(message: ToWorker, transfer: ArrayBuffer[]) => void} post
+ * @property {(receive: (message: FromWorker) => void, fail: (why: string) => void) => void} listen
  * @property {(busy: boolean) => void} hold whether the process has to wait for it
  * @property {() => void} terminate
  */
@@ -34,13 +36,13 @@ import { buffersOf } from './serve.js';
 const START_LIMIT_MS = 15_000;
 
 /**
- * @param {Glue} glue
+ * @param {Glue} glue of the single-threaded build
  * @param {CoreOptions} options
  * @returns {Promise<Host>}
  */
 export async function inProcessHost(glue, options) {
   const core = await Core.start(glue, options);
-  let ended = false;
+  let usable = true;
   return {
     async run(request, { signal, onProgress }) {
       await nextTask(); // timers and events between two calls get their turn: an abort among them is seen
@@ -58,103 +60,128 @@ export async function inProcessHost(glue, options) {
           return stopped !== undefined;
         });
       } catch (error) {
-        throw stopped ? stopped.error : error;
+        if (stopped) throw stopped.error;
+        usable = !isFatal(error);
+        throw error;
       }
     },
-    usable: () => !core.broken && !ended,
-    end() {
-      ended = true;
-      glue.stopThreadPool?.();
-    },
+    usable: () => usable,
+    end: () => void (usable = false),
   };
 }
 
 /**
- * @param {WorkerLike} worker
- * @param {CoreOptions} options
+ * @param {() => WorkerLike} startWorker
+ * @param {CoreOptions & { threads: number }} options
  * @returns {Promise<Host>}
  */
-export async function workerHost(worker, options) {
+export async function workerHost(startWorker, { build, threads, module }) {
+  /** The first computes, the others lend it their threads. */
+  const workers = [connect(startWorker())];
+  const [main] = workers;
   let alive = true;
-  /** What the request under way is waiting for. */
-  let settle = {
-    /** @param {any} _value */
-    resolve(_value) {},
-    /** @param {unknown} _error */
-    reject(_error) {},
-    /** @param {Progress} _progress */
-    progress(_progress) {},
-  };
-
   const end = () => {
     alive = false;
-    worker.terminate();
+    for (const worker of workers) worker.terminate();
   };
-  worker.listen(
-    (message) => {
-      if ('progress' in message) settle.progress(message.progress);
-      else if ('error' in message) {
-        if (message.broken) end();
-        settle.reject(new PointweaveError(message.error));
-      } else settle.resolve('value' in message ? message.value : undefined);
-    },
-    (why) => {
-      end();
-      settle.reject(new PointweaveError({ code: 'internal', message: `the worker died: ${why}` }));
-    },
-  );
-
-  /**
-   * @param {import('./serve.js').ToWorker} message
-   * @param {Watch} watch
-   * @returns {Promise<any>}
-   */
-  const ask = (message, { signal, onProgress }) =>
-    new Promise((resolve, reject) => {
-      const done = () => {
-        signal?.removeEventListener('abort', abort);
-        worker.hold(false);
-      };
-      settle = {
-        resolve: (value) => (done(), resolve(value)),
-        reject: (error) => (done(), reject(error)),
-        progress(progress) {
-          try {
-            onProgress?.(progress);
-          } catch (error) {
-            stop(error);
-          }
-        },
-      };
-      /** @param {unknown} reason */
-      const stop = (reason) => {
-        end();
-        settle.reject(reason);
-      };
-      const abort = () => stop(signal?.reason);
-      signal?.addEventListener('abort', abort);
-      worker.hold(true);
-      worker.post(message, buffersOf(message));
-    });
-
-  const started = ask({ start: options }, {});
-  const late = setTimeout(() => {
+  /** @param {unknown} error */
+  const die = (error) => {
     end();
-    settle.reject(new PointweaveError({ code: 'internal', message: `no start within ${START_LIMIT_MS / 1000} s` }));
+    main.fail(error);
+  };
+
+  const start = async () => {
+    const memory = await main.ask({ start: { build, module } });
+    if (build === 'single') return;
+    workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
+    const pool = workers.slice(1);
+    await Promise.all(pool.map((worker) => worker.ask({ start: { build, module, memory } })));
+    for (const worker of pool) worker.ask({ request: { call: 'lendThread', args: [] } }).catch(die);
+    await main.ask({ request: { call: 'buildPool', args: [threads] } });
+  };
+
+  const late = setTimeout(() => {
+    die(new PointweaveError({ code: 'internal', message: `no start within ${START_LIMIT_MS / 1000} s` }));
   }, START_LIMIT_MS);
+  main.hold(true);
   try {
-    await started;
+    await start();
   } catch (error) {
     end();
     throw error;
   } finally {
     clearTimeout(late);
+    main.hold(false);
   }
+
   return {
-    run: (request, watch) => ask({ request }, watch),
+    async run(request, { signal, onProgress }) {
+      const abort = () => die(signal?.reason);
+      signal?.addEventListener('abort', abort);
+      main.hold(true);
+      try {
+        return await main.ask({ request }, (progress) => {
+          try {
+            onProgress?.(progress);
+          } catch (error) {
+            die(error);
+          }
+        });
+      } catch (error) {
+        if (isFatal(error)) end();
+        throw error;
+      } finally {
+        signal?.removeEventListener('abort', abort);
+        main.hold(false);
+      }
+    },
     usable: () => alive,
     end,
   };
+}
+
+/**
+ * Questions to a worker, one at a time, as promises.
+ * @param {WorkerLike} worker
+ */
+function connect(worker) {
+  /** @type {{ resolve: (value: any) => void, reject: (error: unknown) => void, progress?: (progress: Progress) => void }} */
+  let asked = { resolve() {}, reject() {} };
+  worker.listen(
+    (message) => {
+      if ('progress' in message) asked.progress?.(message.progress);
+      else if ('error' in message) asked.reject(new PointweaveError(message.error));
+      else asked.resolve(message.value);
+    },
+    (why) => asked.reject(new PointweaveError({ code: 'internal', message: `the worker died: ${why}` })),
+  );
+  return {
+    /**
+     * @param {ToWorker} message its arrays are handed over
+     * @param {(progress: Progress) => void} [progress]
+     * @returns {Promise<any>}
+     */
+    ask: (message, progress) =>
+      new Promise((resolve, reject) => {
+        asked = { resolve, reject, progress };
+        worker.post(message, buffersOf(message));
+      }),
+    /** Rejects the question under way. @param {unknown} error */
+    fail(error) {
+      asked.progress = undefined;
+      asked.reject(error);
+    },
+    hold: worker.hold,
+    terminate: worker.terminate,
+  };
+}
+
+/**
+ * Whether an instance that threw this must not be called again.
+ * @param {unknown} error
+ */
+function isFatal(error) {
+  return !(error instanceof PointweaveError) || error.code === 'internal' || error.code === 'out-of-memory';
 }
 
 /** Resolves after the events that are already waiting. */

@@ -18,7 +18,7 @@ export const platform = {
     const worker = new Worker(new URL('./worker.node.js', import.meta.url), { name: 'pointweave' });
     worker.unref();
     return {
-      post: (message, transfer = []) => worker.postMessage(message, transfer),
+      post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
         worker.on('message', receive);
         worker.on('error', (error) => fail(error.message));

@@ -7,19 +7,16 @@ import { compileOnce } from './modules.js';
 export const platform = {
   worker: true,
   cores: () => navigator.hardwareConcurrency ?? 1,
-  threads(worker) {
-    if (!globalThis.crossOriginIsolated) return { possible: false, reason: 'the page is not cross-origin isolated' };
-    if (!worker && 'document' in globalThis) {
-      return { possible: false, reason: 'a page without a worker must not wait for threads' };
-    }
-    return { possible: true, reason: 'the page is cross-origin isolated' };
-  },
+  threads: () =>
+    globalThis.crossOriginIsolated
+      ? { possible: true, reason: 'the page is cross-origin isolated' }
+      : { possible: false, reason: 'the page is not cross-origin isolated' },
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl), compileFrom),
   loadGlue,
   startWorker() {
     const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'pointweave' });
     return {
-      post: (message, transfer = []) => worker.postMessage(message, transfer),
+      post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
         worker.onmessage = ({ data }) => receive(data);
         worker.onerror = (event) => fail(event.message ?? 'its script did not load');

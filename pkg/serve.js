@@ -1,15 +1,13 @@
 /**
- * The worker's side of a {@link import('./hosts.js').workerHost}: starts one core, then answers one
+ * The worker's side of {@link import('./hosts.js').workerHost}: starts one core, then answers one
  * request after the other. It is never asked to stop; who has enough of it terminates the worker.
  */
 import { Core } from './core.js';
 import { toRecord } from './errors.js';
 
 /**
- * @typedef {import('./core.js').CoreOptions} StartMessage
- * @typedef {{ start: StartMessage } | { request: import('./core.js').Request }} ToWorker
- * @typedef {{ started: true } | { progress: import('./types.js').Progress } | { value: any }
- *   | { error: import('./errors.js').ErrorRecord, broken: boolean }} FromWorker
+ * @typedef {{ start: import('./core.js').CoreOptions } | { request: import('./core.js').Request }} ToWorker
+ * @typedef {{ value: any } | { error: import('./errors.js').ErrorRecord } | { progress: import('./types.js').Progress }} FromWorker
  */
 
 /**
@@ -18,31 +16,31 @@ import { toRecord } from './errors.js';
  * @param {(build: import('./types.js').Build) => Promise<import('./core.js').Glue>} loadGlue
  */
 export function serve(port, loadGlue) {
-  /** @type {Core | undefined} */
+  /** @type {Core} */
   let core;
 
   /** @param {ToWorker} message */
   const answer = async (message) => {
-    try {
-      if ('start' in message) {
-        core = await Core.start(await loadGlue(message.start.build), message.start);
-        port.post({ started: true });
-      } else if (core) {
-        const value = core.run(message.request, (progress) => {
-          port.post({ progress });
-          return false; // an abort terminates the worker
-        });
-        port.post({ value }, buffersOf(value));
-      }
-    } catch (error) {
-      port.post({ error: toRecord(error), broken: core?.broken ?? true });
+    if ('request' in message) {
+      return core.run(message.request, (progress) => {
+        port.post({ progress });
+        return false; // an abort terminates the worker
+      });
     }
+    core = await Core.start(await loadGlue(message.start.build), message.start);
+    return message.start.build === 'threads' ? core.memory : undefined; // to share it
   };
-  port.listen(answer);
+
+  port.listen((message) => {
+    answer(message).then(
+      (value) => port.post({ value }, buffersOf(value)),
+      (error) => port.post({ error: toRecord(error) }),
+    );
+  });
 }
 
 /**
- * The buffers of all typed arrays in a result, to hand over instead of copy.
+ * The buffers of all typed arrays in a message, to hand over instead of copy.
  * @param {unknown} value
  * @param {Set<ArrayBuffer>} [found]
  * @returns {ArrayBuffer[]}

@@ -238,10 +238,14 @@ export type Build = 'threads' | 'single';
 export interface EngineOptions {
   /**
    * `'auto'` (default) takes the wasm-threads build in Node and where the page is cross-origin isolated, with a
-   * thread a core, else the single-threaded one; 1 takes the single-threaded build.
+   * thread a core (16 at most), else the single-threaded one; 1 takes the single-threaded build. 64 at most.
    */
   threads?: 'auto' | number;
-  /** Compute in a worker, which keeps the caller's thread free. Default: `true` in a browser, `false` in Node. */
+  /**
+   * Compute in a worker, which keeps the caller's thread free. Default: `true` in a browser; in Node the
+   * single-threaded build computes in the caller's thread. The threads build always has a worker, so `false` means
+   * the single-threaded one.
+   */
   worker?: boolean;
   /** The folder that holds `single/` and `threads/`, or the URL of either wasm file. Default: beside the package. */
   wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL };
