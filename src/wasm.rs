@@ -37,6 +37,20 @@ pub fn panic_message() -> String {
         .unwrap_or_default()
 }
 
+/// Builds the pool of `threads` workers; blocks until as many have called `runWorker`. `pkg/pool.js` starts them.
+#[cfg(feature = "threads")]
+#[wasm_bindgen(js_name = buildPool)]
+pub fn build_pool(threads: usize) -> Result<(), JsError> {
+    Ok(crate::pool::build(threads)?)
+}
+
+/// Lends the calling worker to the pool. Does not return while the pool lives.
+#[cfg(feature = "threads")]
+#[wasm_bindgen(js_name = runWorker)]
+pub fn run_worker() {
+    crate::pool::run_worker();
+}
+
 /// `{ reduce, reconstruct }`: the defaults, which `pkg/options.js` repeats.
 #[wasm_bindgen]
 pub fn defaults() -> JsResult {
