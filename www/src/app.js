@@ -43,11 +43,10 @@ export class App {
     this.#listenToControls();
     this.#keep.set(this.#session.share);
     if (this.#viewer) followTheme((theme) => this.#viewer?.setTheme(theme));
-    else this.#message.show(NO_WEBGL);
+    byId('no-webgl', HTMLElement).hidden = Boolean(this.#viewer);
   }
 
   openSample(/** @type {keyof typeof SAMPLES} */ model) {
-    this.#mark(model);
     const { title, count } = SAMPLES[model];
     return this.#session.openSample(model, title, count);
   }
@@ -116,10 +115,10 @@ export class App {
   }
 
   #opened(/** @type {Scan} */ scan) {
-    if (!(scan.file in SAMPLES)) this.#mark(null);
+    this.#mark(scan.model);
     byId('caption-title', HTMLElement).textContent = scan.title;
     byId('caption-detail', HTMLElement).textContent =
-      [scan.detail, `${format.count(scan.count)} points`, scan.frame.size.map(format.length).join(' × ')].filter(Boolean).join(' · ');
+      [scan.model && 'simulated scan', `${format.count(scan.count)} points`, scan.frame.size.map(format.length).join(' × ')].filter(Boolean).join(' · ');
     this.#viewer?.open(scan.cloud, scan.frame);
     this.#viewChosen = false;
     this.#offer('reduced', false);
@@ -146,7 +145,6 @@ export class App {
   #cancelled() {
     announce('Cancelled');
     this.#run.hidden = !this.#session.scan;
-    this.#mark(this.#session.scan?.file ?? null);
   }
 
   #failed(/** @type {unknown} */ error, /** @type {string} */ title) {
@@ -195,7 +193,7 @@ export class App {
   }
 
   /** Marks the open sample in the gallery, or none. */
-  #mark(/** @type {string | null} */ model) {
+  #mark(/** @type {string | undefined} */ model) {
     for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === model);
   }
 
@@ -203,12 +201,6 @@ export class App {
     return /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-sample]'));
   }
 }
-
-const NO_WEBGL = {
-  title: 'The picture cannot be drawn',
-  text: 'This browser offers no WebGL 2, which the picture needs. Scans can still be reduced, meshed and saved.',
-  advice: 'Turn on hardware acceleration in the settings, or use another browser.',
-};
 
 /** The viewer, or null where there is no WebGL 2: the rest of the page works without it. */
 function openViewer() {

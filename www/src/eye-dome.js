@@ -27,8 +27,8 @@ export class EyeDome {
     fragmentShader: /* glsl */ `
       uniform sampler2D colors, depths;
       uniform float near, far, reach;
-      const float STRENGTH = 22.0;
-      const float LIMIT = 0.06;
+      const float STRENGTH = 60.0;
+      const float LIMIT = 0.012;
 
       float logDepth(ivec2 pixel) {
         ivec2 size = textureSize(depths, 0);
@@ -42,12 +42,13 @@ export class EyeDome {
         if (color.a == 0.0) discard;
         float depth = logDepth(here);
         float behind = 0.0;
-        for (int k = 0; k < 8; k++) {
+        for (int k = 0; k < 16; k++) {
           float angle = 0.785398 * float(k);
-          ivec2 there = here + ivec2(round(reach * vec2(cos(angle), sin(angle))));
+          float distance = k < 8 ? 1.5 : 7.0; // the outlines of points, then the shape that they make
+          ivec2 there = here + ivec2(round(reach * distance * vec2(cos(angle), sin(angle))));
           behind += clamp(depth - logDepth(there), 0.0, LIMIT);
         }
-        gl_FragColor = vec4(color.rgb * exp(-STRENGTH * behind / 8.0 * 4.0), 1.0);
+        gl_FragColor = vec4(color.rgb * exp(-STRENGTH * behind / 16.0), 1.0);
       }`,
   });
 
@@ -72,7 +73,7 @@ export class EyeDome {
     const { uniforms } = this.#material;
     uniforms.near.value = camera.near;
     uniforms.far.value = camera.far;
-    uniforms.reach.value = 1.5 * renderer.getPixelRatio();
+    uniforms.reach.value = renderer.getPixelRatio();
     renderer.clear();
     this.#quad.render(renderer);
   }

@@ -17,8 +17,8 @@ import { meshMaterial, pointMaterial } from './materials.js';
 /** Area of a scanned surface over the squared diagonal of its box: about that of a sphere. */
 const TYPICAL_AREA = 0.9;
 /** Points wider than their spacing close the surface; narrower ones can be told apart. */
-const SCAN_COVER = 1.35;
-const REDUCED_COVER = 0.8;
+const SCAN_COVER = 1.6;
+const REDUCED_COVER = 0.85;
 
 /**
  * One draw call for each layer.

@@ -3,12 +3,12 @@ import { DataTexture, LinearFilter, SRGBColorSpace, UnsignedByteType, RGBAFormat
 const SIZE = 256;
 
 /** Directions in eye space (x right, y up, z to the viewer) and how each light acts. */
-const KEY = { towards: normalize([-0.45, 0.75, 0.55]), color: [1.0, 0.96, 0.9], strength: 0.72 };
-const FILL = { towards: normalize([0.85, 0.05, 0.5]), color: [0.72, 0.82, 1.0], strength: 0.22 };
-const SKY = [0.4, 0.43, 0.47];
-const GROUND = [0.2, 0.17, 0.15];
-const RIM = { color: [0.85, 0.93, 1.0], strength: 0.22 };
-const GLOSS = { exponent: 48, strength: 0.12 };
+const KEY = { towards: normalize([-0.45, 0.75, 0.55]), color: [1.0, 0.96, 0.9], strength: 0.66 };
+const FILL = { towards: normalize([0.85, 0.05, 0.5]), color: [0.72, 0.82, 1.0], strength: 0.12 };
+const SKY = [0.3, 0.32, 0.35];
+const GROUND = [0.11, 0.095, 0.085];
+const RIM = { color: [0.85, 0.93, 1.0], strength: 0.2 };
+const GLOSS = { exponent: 40, strength: 0.1 };
 
 /**
  * A studio in one texture: the colour of a softly lit white sphere for each direction of the normal.
@@ -40,7 +40,7 @@ function sphereNormal(/** @type {number} */ column, /** @type {number} */ row) {
 /** Linear colour of the lit sphere where its normal is `n`. */
 function shade(/** @type {number[]} */ n) {
   const sky = 0.5 + 0.5 * n[1];
-  const key = wrapped(dot(n, KEY.towards), 0.25) * KEY.strength;
+  const key = wrapped(dot(n, KEY.towards), 0.12) * KEY.strength;
   const fill = wrapped(dot(n, FILL.towards), 0.4) * FILL.strength;
   const rim = (1 - n[2]) ** 3 * (0.35 + 0.65 * sky) * RIM.strength;
   const half = normalize([KEY.towards[0], KEY.towards[1], KEY.towards[2] + 1]);

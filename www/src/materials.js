@@ -19,8 +19,9 @@ export function meshMaterial({ colored }) {
 }
 
 /**
- * Points as round dots whose size follows the distance. With normals they are shaded; without, the depth
- * pass (eye-dome.js) gives them shape. Colours go through as the sRGB values that they are.
+ * Points as round dots whose size follows the distance. With oriented normals they are shaded, and those on
+ * the far side fade into the background; without, the depth pass (eye-dome.js) gives them shape. Colours go
+ * through as the sRGB values that they are.
  * @param {{ colored: boolean, shaded: boolean, diameter: number }} options  diameter in the viewer's frame
  */
 export function pointMaterial({ colored, shaded, diameter }) {
@@ -28,12 +29,13 @@ export function pointMaterial({ colored, shaded, diameter }) {
     defines: { ...(colored && { COLORED: '' }), ...(shaded && { SHADED: '' }) },
     uniforms: {
       tint: { value: new Color() },
+      background: { value: new Color() },
       diameter: { value: diameter },
       pixelsPerUnit: { value: 1 },
       smallest: { value: 1 },
     },
     vertexShader: /* glsl */ `
-      uniform vec3 tint;
+      uniform vec3 tint, background;
       uniform float diameter, pixelsPerUnit, smallest;
       varying vec3 shown;
       #ifdef COLORED
@@ -51,7 +53,9 @@ export function pointMaterial({ colored, shaded, diameter }) {
         #ifdef SHADED
           vec3 n = normalize(normalMatrix * normal);
           float light = 0.5 + 0.5 * dot(n, normalize(vec3(-0.45, 0.75, 0.55)));
-          shown *= 0.55 + 0.6 * light;
+          float facing = dot(n, normalize(-eye.xyz));
+          shown = mix(background, shown * (0.5 + 0.65 * light), smoothstep(-0.15, 0.1, facing) * 0.85 + 0.15);
+          if (facing < -0.15) gl_PointSize *= 0.7;
         #endif
       }`,
     fragmentShader: /* glsl */ `

@@ -44,6 +44,11 @@ const WORDS = /** @type {Record<string, Words>} */ ({
     text: READABLE,
     advice: 'Convert the file to PLY in the program that made it.',
   },
+  'load-failed': {
+    title: 'The engine could not be loaded',
+    text: 'Pointweave computes with a WebAssembly program that belongs to this page, and it did not arrive.',
+    advice: 'Check the connection and reload the page.',
+  },
   'out-of-memory': {
     title: 'Not enough memory for this scan',
     text: 'The browser gives a page a limited amount of memory, and this scan needs more.',
@@ -73,14 +78,11 @@ export class MessageCard {
   /** @param {any} error  @param {string} about  what the person had opened */
   showError(error, about) {
     const code = typeof error?.code === 'string' ? error.code : 'internal';
-    this.show(WORDS[code] ?? UNEXPECTED, `${about}: ${error?.message ?? error} [${code}]`);
-  }
-
-  show(/** @type {Words} */ { title, text, advice }, detail = '') {
+    const { title, text, advice } = WORDS[code] ?? UNEXPECTED;
     byId('message-title', HTMLElement).textContent = title;
     byId('message-text', HTMLElement).textContent = text;
     byId('message-advice', HTMLElement).textContent = advice;
-    byId('message-detail', HTMLElement).textContent = detail;
+    byId('message-detail', HTMLElement).textContent = `${about}: ${error?.message ?? error} [${code}]`;
     this.#box.hidden = false;
   }
 

@@ -11,6 +11,7 @@ import { stageWords } from './stages.js';
 export class Numbers {
   #box = byId('numbers', HTMLElement);
   #engine = byId('engine', HTMLElement);
+  #reason = byId('engine-reason', HTMLElement);
   #stages = byId('stages', HTMLUListElement);
 
   /** A new scan: only its size is known. */
@@ -18,6 +19,7 @@ export class Numbers {
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
     this.#set('inputPoints', inputPoints, format.count);
     this.#engine.textContent = '–';
+    this.#reason.textContent = '';
     this.#stages.replaceChildren();
     this.stale();
   }
@@ -42,7 +44,7 @@ export class Numbers {
       this.#set(`${name}Share`, share, format.percent);
     }
     this.#engine.textContent = engineWords(report);
-    this.#engine.title = report.reason ?? '';
+    this.#reason.textContent = `Because ${report.reason}.`;
     this.#showStages(report.ms);
     this.#box.dataset.fresh = 'true';
   }

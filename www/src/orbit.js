@@ -3,7 +3,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 /** First look at a scan: from the front, a little from the right and above. */
 const FIRST_LOOK = new Vector3(0.55, 0.38, 1).normalize();
-const FIT_MARGIN = 1.06;
+const FIT_MARGIN = 1.1;
 const FIT_MS = 420;
 /** The ways to stand a scan upright, in the order in which the button goes through them. */
 const UPS = [

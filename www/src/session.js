@@ -5,7 +5,9 @@ import { frameOf } from './frame.js';
  * @import { PointCloud, ReducedCloud, SurfaceMesh } from 'pointweave'
  * @import { Frame } from './frame.js'
  *
- * @typedef {{ title: string, detail: string, file: string, cloud: PointCloud, count: number, frame: Frame }} Scan
+ * Where a scan comes from: a title to show, a name to save under, and for a simulated scan its model.
+ * @typedef {{ title: string, file: string, model?: 'duck' | 'pig' | 'part' }} Source
+ * @typedef {Source & { cloud: PointCloud, count: number, frame: Frame }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
@@ -33,13 +35,13 @@ export class Session extends EventTarget {
 
   /** Generates one of the package's simulated scans and makes its mesh. */
   openSample(/** @type {'duck' | 'pig' | 'part'} */ model, /** @type {string} */ title, /** @type {number} */ count) {
-    return this.#open({ title, detail: 'simulated scan', file: model }, () => sample(model, { count, seed: 1 }));
+    return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
   }
 
   /** Reads a file of the person's and makes its mesh. */
   openFile(/** @type {File} */ file) {
     const name = file.name.replace(/\.[^.]*$/, '') || 'scan';
-    return this.#open({ title: file.name, detail: '', file: name }, () => read(file, { name: file.name }));
+    return this.#open({ title: file.name, file: name }, (signal) => read(file, { name: file.name, signal }));
   }
 
   /** Keeps another share of the points: stops what runs and starts again. */
@@ -84,19 +86,19 @@ export class Session extends EventTarget {
   }
 
   /**
-   * @param {{ title: string, detail: string, file: string }} about
-   * @param {() => Promise<PointCloud>} load
+   * @param {Source} source
+   * @param {(signal: AbortSignal) => Promise<PointCloud>} load
    */
-  async #open(about, load) {
+  async #open(source, load) {
     const job = this.#begin('reading');
     try {
-      const cloud = await load();
+      const cloud = await load(job.signal);
       if (job.signal.aborted) return;
-      this.scan = { ...about, cloud, count: cloud.positions.length / 3, frame: frameOf(cloud) };
+      this.scan = { ...source, cloud, count: cloud.positions.length / 3, frame: frameOf(cloud) };
       this.outcome = null;
       this.#emit('opened', this.scan);
     } catch (error) {
-      this.#end(job, 'failed', { error, title: about.title });
+      this.#end(job, 'failed', { error, title: source.title });
       // The scan that was open stays; the job that this file interrupted goes on.
       if (this.#job === null && this.scan && !this.outcome) await this.run();
       return;

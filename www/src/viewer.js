@@ -12,7 +12,7 @@ import { Orbit } from './orbit.js';
  */
 
 /** Room for what lies over the picture, in CSS pixels. */
-const TOP = 56;
+const TOP = 72;
 const BOTTOM = 76;
 
 /** Draws one layer of the scan at a time, and only when something changed. */
@@ -95,7 +95,10 @@ export class Viewer {
       const colored = layer.geometry.hasAttribute('color');
       const material = /** @type {any} */ (layer.material);
       if (name === 'mesh') material.color.set(colored ? '#ffffff' : this.#theme.mesh);
-      else material.uniforms.tint.value.set(this.#theme[name]).convertLinearToSRGB();
+      else {
+        material.uniforms.tint.value.set(this.#theme[name]).convertLinearToSRGB();
+        material.uniforms.background.value.set(this.#theme.background).convertLinearToSRGB();
+      }
     }
   }
 

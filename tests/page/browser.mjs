@@ -1,0 +1,168 @@
+// The built page on a static server of its own, in headless Chromium, and what the tests do with it.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { existsSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { dirname, extname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { chromium } from 'playwright-core';
+
+const ROOT = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
+const DIST = join(ROOT, 'www/dist');
+const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(ROOT, '../shared');
+
+const CHROMIUM = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const FLAGS = [
+  '--headless=new', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
+  '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+];
+
+const TYPES = {
+  '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm',
+};
+
+/** What lies over the picture, hidden for pixel tests. */
+const PICTURE_ONLY = '.caption, .tools, .views, .progress, .message { visibility: hidden !important }';
+
+/** Long enough for the largest scan on a slow machine. */
+export const PATIENCE = 300_000;
+
+/** A file of the shared data, or null after a printed line when it is not there. */
+export async function sharedFile(path) {
+  const file = join(SHARED, 'data', path);
+  if (existsSync(file)) return readFile(file);
+  console.log(`not tested: ${file} is missing (set POINTWEAVE_SHARED to the folder that holds data/)`);
+  return null;
+}
+
+/**
+ * A browser and a static server for the built page; both end with the test.
+ * @param {import('node:test').TestContext} t
+ */
+export async function start(t, { isolated = true } = {}) {
+  assert.ok(existsSync(join(DIST, 'index.html')), 'the page is not built: run `cargo xtask build` first');
+  const executablePath = CHROMIUM.find((path) => path && existsSync(path));
+  assert.ok(executablePath, 'no Chromium found: install it, or set CHROMIUM to its path');
+
+  const files = new Map();
+  const server = createServer((request, response) => answer(request, response, files, isolated));
+  await new Promise((ready) => server.listen(0, ready));
+  const browser = await chromium.launch({ executablePath, args: FLAGS });
+  t.after(async () => {
+    await browser.close();
+    server.close();
+  });
+  return new Site(browser, `http://localhost:${server.address().port}/`, files);
+}
+
+async function answer(request, response, files, isolated) {
+  const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
+  const file = join(DIST, path.endsWith('/') ? `${path}index.html` : path);
+  const body = files.get(path) ?? (file.startsWith(DIST) ? await readFile(file).catch(() => null) : null);
+  if (isolated) {
+    response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+    response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
+  }
+  response.setHeader('Content-Type', TYPES[extname(file)] ?? 'application/octet-stream');
+  response.writeHead(body ? 200 : 404).end(body ?? '');
+}
+
+/** The page's address, and the files that a test puts beside it to be dropped. */
+class Site {
+  #browser;
+  #files;
+
+  constructor(browser, address, files) {
+    this.#browser = browser;
+    this.address = address;
+    this.#files = files;
+  }
+
+  /** Opens the page and waits for nothing. */
+  async open(options = {}, prepare = async (_page) => {}) {
+    const context = await this.#browser.newContext({ viewport: { width: 1280, height: 820 }, reducedMotion: 'reduce', ...options });
+    const page = await context.newPage();
+    const faults = [];
+    page.on('pageerror', (error) => faults.push(String(error)));
+    page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+    await prepare(page);
+    await page.goto(this.address);
+    return new PageUnderTest(page, faults, this.#files);
+  }
+}
+
+/** The page as a person sees and uses it. */
+class PageUnderTest {
+  #files;
+
+  constructor(page, faults, files) {
+    this.page = page;
+    /** Uncaught errors and console errors so far. */
+    this.faults = faults;
+    this.#files = files;
+  }
+
+  /** Waits until no job runs any more. */
+  async settled() {
+    await this.page.waitForSelector('#app[data-state="ready"]', { timeout: PATIENCE });
+    await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+  }
+
+  /** Waits until the result of the present settings is shown. */
+  async made() {
+    await this.page.waitForSelector('#app[data-state="ready"] #numbers[data-fresh="true"]', { timeout: PATIENCE });
+    await this.settled();
+  }
+
+  /** Drops a file on the middle of the page, with its real events, and waits until the page has taken it. */
+  async drop(name, bytes) {
+    const path = `/dropped/${encodeURIComponent(name)}`;
+    this.#files.set(`/dropped/${name}`, bytes);
+    await this.page.evaluate(async ([address, fileName]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([await (await fetch(address)).blob()], fileName));
+      for (const type of ['dragenter', 'dragover', 'drop']) {
+        document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+      }
+    }, [path, name]);
+  }
+
+  /** Chooses a file through the button. */
+  async choose(name, bytes) {
+    const chooser = this.page.waitForEvent('filechooser');
+    await this.page.click('#choose');
+    await (await chooser).setFiles({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(bytes) });
+  }
+
+  async show(view) {
+    await this.page.locator(`input[name="view"][value="${view}"]`).check({ force: true });
+    await this.settled();
+  }
+
+  view() {
+    return this.page.getAttribute('#app', 'data-view');
+  }
+
+  /** A number of the panel, as the machine-readable value; NaN while there is none. */
+  async number(name) {
+    const value = await this.page.getAttribute(`data[data-number="${name}"]`, 'value');
+    return value === null ? NaN : Number(value);
+  }
+
+  /** The picture alone, as PNG bytes. */
+  picture() {
+    return this.page.locator('#canvas').screenshot({ style: PICTURE_ONLY, animations: 'disabled' });
+  }
+
+  /** The picture of one view. */
+  async pictureOf(view) {
+    await this.show(view);
+    return this.picture();
+  }
+
+  message() {
+    return this.page.locator('#message:visible').innerText();
+  }
+}

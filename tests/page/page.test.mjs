@@ -1,0 +1,203 @@
+// The page as a person uses it, in both builds of the engine.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { test } from 'node:test';
+import { PATIENCE, start } from './browser.mjs';
+import { difference, overlap, silhouette } from './pictures.mjs';
+
+const DUCK = 35_647;
+
+/** Opens the page and waits for the sample. */
+async function withSample(t, server = {}, options = {}, prepare = undefined) {
+  const site = await (await start(t, server)).open(options, prepare);
+  await site.made();
+  return site;
+}
+
+for (const isolated of [true, false]) {
+  test(`opens with a meshed sample, ${isolated ? 'isolated: threads' : 'not isolated: one thread'}`, { timeout: PATIENCE }, async (t) => {
+    const requests = [];
+    const watch = async (page) => page.on('request', (request) => requests.push(request));
+    const site = await withSample(t, { isolated }, {}, watch);
+
+    assert.equal(await site.view(), 'mesh');
+    assert.equal(await site.number('inputPoints'), DUCK);
+    assert.equal(await site.number('outputPoints'), Math.round(DUCK / 3));
+    assert.equal(await site.number('components'), 1);
+    assert.match(await site.page.innerText('#engine'), isolated ? /^\d+ threads$/ : /^one thread$/);
+    assert.equal(await site.page.isVisible('#message'), false);
+
+    const mesh = silhouette(await site.pictureOf('mesh')).closed(6);
+    const scan = silhouette(await site.pictureOf('points')).closed(6);
+    assert.ok(overlap(mesh, scan) > 0.8, 'the mesh covers what the scan covers');
+
+    assert.deepEqual(site.faults, []);
+    const origin = new URL(site.page.url()).origin;
+    for (const request of requests) {
+      assert.equal(request.method(), 'GET', `nothing is sent: ${request.url()}`);
+      assert.ok(request.url().startsWith(origin) || /^(blob|data):/.test(request.url()), `only this server is asked: ${request.url()}`);
+    }
+  });
+}
+
+test('another share of the points gives exactly that many', { timeout: PATIENCE }, async (t) => {
+  const site = await withSample(t);
+  const before = await site.number('triangles');
+  await site.page.fill('#keep-field', '12.5');
+  await site.page.waitForSelector('#app[data-state="working"]');
+  await site.made();
+  assert.equal(await site.number('outputPoints'), Math.round(DUCK * 0.125));
+  assert.notEqual(await site.number('triangles'), before);
+
+  // Several steps of the slider in a row: only the last one counts.
+  await site.page.focus('#keep-slider');
+  for (let step = 0; step < 5; step++) await site.page.keyboard.press('PageUp');
+  await site.page.waitForSelector('#app[data-state="working"]');
+  await site.made();
+  const share = Number(await site.page.inputValue('#keep-field')) / 100;
+  assert.ok(share > 0.125, 'the slider moved the field');
+  assert.equal(await site.number('outputPoints'), Math.round(DUCK * share));
+  assert.deepEqual(site.faults, []);
+});
+
+test('a job can be cancelled and started again', { timeout: PATIENCE }, async (t) => {
+  const site = await withSample(t);
+  await site.page.click('[data-sample="pig"]');
+  await site.page.waitForSelector('#app[data-state="working"]', { timeout: PATIENCE });
+  await site.page.click('#cancel');
+  await site.page.waitForSelector('#app[data-state="ready"]', { timeout: 1000 });
+  assert.equal(await site.page.isVisible('#progress'), false);
+  assert.ok(Number.isNaN(await site.number('triangles')), 'no number is left from the scan before');
+  assert.ok(silhouette(await site.picture()).area > 0, 'the scan itself is shown');
+
+  await site.page.fill('#keep-field', '5');
+  await site.made();
+  assert.equal(await site.number('outputPoints'), Math.round((await site.number('inputPoints')) * 0.05));
+  assert.equal(await site.page.isVisible('#message'), false);
+  assert.deepEqual(site.faults, []);
+});
+
+test('bad files are explained, and the page goes on', { timeout: PATIENCE }, async (t) => {
+  const site = await withSample(t);
+  const triangles = await site.number('triangles');
+  const cut = Buffer.from('ply\nformat binary_little_endian 1.0\nelement vertex 1000\n'
+    + 'property float x\nproperty float y\nproperty float z\nend_header\n\0\0\0\0');
+  const cases = [
+    ['empty.ply', Buffer.alloc(0), 'bad-file|unknown-format|empty-cloud'],
+    ['cut.ply', cut, 'bad-file'],
+    ['holiday.jpg', Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16, 0x4a, 0x46, 0x49, 0x46]), 'unknown-format'],
+    ['broken.xyz', Buffer.from('0 0 0\n1 0 0\n0 1 zero\n'), 'bad-file'],
+  ];
+  for (const [name, bytes, codes] of cases) {
+    await site.drop(name, bytes);
+    await site.page.waitForSelector('#message:not([hidden])');
+    const text = await site.message();
+    assert.match(text, new RegExp(`\\[(${codes})\\]`), `${name}: ${text}`);
+    assert.ok(text.includes(name), 'the file is named');
+    assert.equal(await site.page.getAttribute('#app', 'data-state'), 'ready');
+    assert.equal(await site.number('triangles'), triangles, 'the duck is still there');
+    await site.page.click('#message-close');
+  }
+  assert.match(await site.page.innerText('#caption-title'), /duck/i);
+
+  // Three points on a line: they are shown, and it is said why there is no mesh.
+  await site.drop('line.xyz', Buffer.from(Array.from({ length: 50 }, (_, i) => `${i} 0 0`).join('\n')));
+  await site.page.waitForSelector('#message:not([hidden])');
+  assert.match(await site.message(), /\[(degenerate|too-few-points)\]/);
+  await site.settled();
+  assert.ok(await site.page.isDisabled('input[name="view"][value="mesh"]'));
+
+  await site.page.click('[data-sample="duck"]');
+  await site.made();
+  assert.equal(await site.number('triangles'), triangles, 'the duck again, as before');
+  assert.equal(await site.page.isVisible('#message'), false);
+  assert.deepEqual(site.faults, []);
+});
+
+test('keyboard alone', { timeout: PATIENCE }, async (t) => {
+  const site = await withSample(t);
+  const { page } = site;
+  for (const [key, view] of [['1', 'points'], ['2', 'reduced'], ['3', 'mesh']]) {
+    await page.keyboard.press(key);
+    assert.equal(await site.view(), view);
+  }
+  await page.focus('#canvas');
+  const front = await site.picture();
+  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+  const side = await site.picture();
+  assert.ok(difference(front, side) > 0.05, 'the arrows turn the model');
+  await page.keyboard.press('-');
+  await page.keyboard.press('-');
+  assert.ok(silhouette(await site.picture()).area < 0.9 * silhouette(side).area, 'minus goes away');
+  await page.keyboard.press('f');
+  await site.settled();
+  const fitted = silhouette(await site.picture());
+  assert.ok(Math.max(fitted.box.width / fitted.width, fitted.box.height / fitted.height) > 0.7, 'F fits the view');
+
+  // Keys belong to the field while one types in it.
+  await page.focus('#keep-field');
+  await page.keyboard.press('1');
+  assert.equal(await site.view(), 'mesh');
+
+  // Every control is reached with Tab.
+  const reached = new Set();
+  await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
+  for (let k = 0; k < 30; k++) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.getAttribute('name')));
+  }
+  for (const id of ['choose', 'canvas', 'fit', 'up', 'view', 'duck', 'pig', 'part', 'keep-slider', 'keep-field', 'download-mesh', 'download-reduced']) {
+    assert.ok(reached.has(id), `${id} is reached with Tab`);
+  }
+});
+
+test('downloads hold what the numbers say', { timeout: PATIENCE }, async (t) => {
+  const site = await withSample(t);
+  for (const [button, pattern, number] of [
+    ['#download-reduced', /element vertex (\d+)/, 'outputPoints'],
+    ['#download-mesh', /element face (\d+)/, 'triangles'],
+  ]) {
+    const saved = site.page.waitForEvent('download');
+    await site.page.click(button);
+    const download = await saved;
+    assert.match(download.suggestedFilename(), /^duck-.*\.ply$/);
+    const header = (await readFile(await download.path())).toString('latin1').slice(0, 2000);
+    assert.equal(Number(pattern.exec(header)?.[1]), await site.number(number));
+  }
+});
+
+for (const colorScheme of ['light', 'dark']) {
+  test(`a phone, 360 px wide, ${colorScheme}`, { timeout: PATIENCE }, async (t) => {
+    const phone = { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true, colorScheme };
+    const site = await withSample(t, {}, phone);
+    const width = await site.page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(width <= 360, `nothing sticks out: ${width} px`);
+
+    const small = await site.page.$$eval('button, input[type="range"], input[type="number"], .views label', (controls) =>
+      controls.filter((control) => control.checkVisibility())
+        .map((control) => [control.id || control.textContent.trim(), control.getBoundingClientRect()])
+        .filter(([, box]) => box.width < 44 || box.height < 44)
+        .map(([name, box]) => `${name}: ${box.width} × ${box.height}`));
+    assert.deepEqual(small, [], 'every target is at least 44 px');
+
+    const paper = await site.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const brightness = paper.match(/\d+/g).slice(0, 3).reduce((sum, value) => sum + Number(value), 0) / 3;
+    assert.ok(colorScheme === 'dark' ? brightness < 60 : brightness > 200, `paper is ${paper}`);
+    assert.ok(silhouette(await site.picture()).area > 0, 'the model is drawn');
+  });
+}
+
+test('without WebGL it says so, and still computes', { timeout: PATIENCE }, async (t) => {
+  const noWebgl = (page) => page.addInitScript(() => {
+    const original = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return /webgl/.test(kind) ? null : original.call(this, kind, ...rest);
+    };
+  });
+  const site = await (await start(t)).open({}, noWebgl);
+  await site.made();
+  assert.match(await site.page.locator('#no-webgl:visible').innerText(), /cannot be drawn/);
+  assert.equal(await site.number('inputPoints'), DUCK);
+  assert.ok(await site.page.isEnabled('#download-mesh'));
+});

@@ -1,0 +1,76 @@
+// Real scans through the built page: the numbers and the drawn picture are those of the file.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { PATIENCE, sharedFile, start } from './browser.mjs';
+import { difference, expectedSilhouette, overlap, silhouette } from './pictures.mjs';
+import { mergedBunny, parseOni, parsePcd, parseXyz, toPly } from './scans.mjs';
+
+const SAME_SHAPE = 0.8;
+
+/** What must hold after any scan was opened: numbers that fit, three different pictures of the same object. */
+async function checkResult(site, points) {
+  assert.equal(await site.number('inputPoints'), points.length);
+  assert.equal(await site.number('outputPoints'), Math.round(points.length / 3));
+  assert.ok((await site.number('triangles')) > points.length / 20, 'the mesh has triangles');
+  assert.ok((await site.number('errorMeanShare')) < 0.01, 'the mesh is near the points');
+
+  const pictures = {};
+  for (const view of ['points', 'reduced', 'mesh']) pictures[view] = await site.pictureOf(view);
+  assert.ok(difference(pictures.points, pictures.reduced) > 0.01, 'scan and reduced points look different');
+  assert.ok(difference(pictures.reduced, pictures.mesh) > 0.01, 'reduced points and mesh look different');
+
+  const scan = silhouette(pictures.points).closed(6);
+  const mesh = silhouette(pictures.mesh).closed(6);
+  assert.ok(mesh.area > 0.05 * mesh.width * mesh.height, 'the mesh fills a good part of the picture');
+  const drawn = overlap(scan, mesh);
+  const expected = overlap(expectedSilhouette(points).closed(8).normalized(), mesh.normalized());
+  assert.ok(drawn > SAME_SHAPE, `scan and mesh cover the same pixels: ${drawn.toFixed(3)}`);
+  assert.ok(expected > SAME_SHAPE, `the mesh looks like the projected points: ${expected.toFixed(3)}`);
+}
+
+test('real scans', { timeout: 4 * PATIENCE }, async (t) => {
+  const browser = await start(t);
+  const site = await browser.open();
+  await site.made();
+
+  await t.test('kitten.xyz, dropped', async () => {
+    const file = await sharedFile('scans/kitten.xyz');
+    if (!file) return;
+    await site.drop('kitten.xyz', file);
+    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'kitten.xyz');
+    await site.made();
+    await checkResult(site, parseXyz(file.toString()));
+  });
+
+  await t.test('oni.ply, chosen with the button', async () => {
+    const file = await sharedFile('scans/oni.ply');
+    if (!file) return;
+    await site.choose('oni.ply', file);
+    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'oni.ply');
+    await site.made();
+    await checkResult(site, parseOni(file));
+  });
+
+  await t.test('Zaghetto, converted to PLY', async () => {
+    const file = await sharedFile('scans/Zaghetto.pcd');
+    if (!file) return;
+    const points = parsePcd(file);
+    await site.drop('zaghetto.ply', toPly(points));
+    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'zaghetto.ply');
+    await site.made();
+    await checkResult(site, points);
+  });
+
+  await t.test('the ten raw scans of the bunny, merged', async () => {
+    const points = await mergedBunny();
+    if (!points) return;
+    assert.equal(points.length, 362_272);
+    await site.drop('bunny.ply', toPly(points));
+    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'bunny.ply');
+    await site.made();
+    await checkResult(site, points);
+  });
+
+  assert.deepEqual(site.faults, []);
+});
