@@ -1,6 +1,6 @@
 //! The thread pool of the wasm-threads build: rayon's, on workers that JavaScript starts.
 //!
-//! Wasm cannot start a thread. So JavaScript starts workers over the shared memory, each calls [`run_worker`] and waits
+//! Wasm cannot start a thread. So JavaScript starts workers over the shared memory, each calls [`lend_thread`] and waits
 //! there; then [`build`] hands every one of them its share of the pool. A pool is not taken down: JavaScript
 //! terminates the workers together with the engine that owns the memory.
 
@@ -14,7 +14,7 @@ static WANTED: Mutex<VecDeque<ThreadBuilder>> = Mutex::new(VecDeque::new());
 static ADDED: Condvar = Condvar::new();
 
 /// Builds the pool that [`crate::par::map`] uses, once a memory. Blocks until `threads` workers have called
-/// [`run_worker`]; a browser's main thread may not block, so call it in a worker.
+/// [`lend_thread`]; a browser's main thread may not block, so call it in a worker.
 ///
 /// # Errors
 /// If there is a pool already.
@@ -22,7 +22,10 @@ pub fn build(threads: usize) -> Result<(), ThreadPoolBuildError> {
     ThreadPoolBuilder::new()
         .num_threads(threads)
         .spawn_handler(|thread| {
-            WANTED.lock().unwrap_or_else(PoisonError::into_inner).push_back(thread);
+            WANTED
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .push_back(thread);
             ADDED.notify_one();
             Ok(())
         })
@@ -30,7 +33,7 @@ pub fn build(threads: usize) -> Result<(), ThreadPoolBuildError> {
 }
 
 /// Lends the calling thread to the pool, for as long as there is a pool.
-pub fn run_worker() {
+pub fn lend_thread() {
     let mut wanted = WANTED.lock().unwrap_or_else(PoisonError::into_inner);
     let thread = loop {
         if let Some(thread) = wanted.pop_front() {
@@ -47,12 +50,17 @@ mod tests {
     #[test]
     fn lent_threads_become_the_pool() {
         for _ in 0..3 {
-            std::thread::spawn(super::run_worker);
+            std::thread::spawn(super::lend_thread);
         }
         super::build(3).unwrap();
         assert_eq!(crate::par::threads(), 3);
         let squares = crate::par::map(1000, || (), |i, ()| i * i);
-        assert!(squares.iter().enumerate().all(|(i, &square)| square == i * i));
+        assert!(
+            squares
+                .iter()
+                .enumerate()
+                .all(|(i, &square)| square == i * i)
+        );
         assert!(super::build(3).is_err());
     }
 }

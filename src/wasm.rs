@@ -37,7 +37,7 @@ pub fn panic_message() -> String {
         .unwrap_or_default()
 }
 
-/// Builds the pool of `threads` workers; blocks until as many have called `runWorker`. `pkg/pool.js` starts them.
+/// Builds the pool of `threads` workers; blocks until as many have called `lendThread`. `pkg/hosts.js` starts them.
 #[cfg(feature = "threads")]
 #[wasm_bindgen(js_name = buildPool)]
 pub fn build_pool(threads: usize) -> Result<(), JsError> {
@@ -46,9 +46,9 @@ pub fn build_pool(threads: usize) -> Result<(), JsError> {
 
 /// Lends the calling worker to the pool. Does not return while the pool lives.
 #[cfg(feature = "threads")]
-#[wasm_bindgen(js_name = runWorker)]
-pub fn run_worker() {
-    crate::pool::run_worker();
+#[wasm_bindgen(js_name = lendThread)]
+pub fn lend_thread() {
+    crate::pool::lend_thread();
 }
 
 /// `{ reduce, reconstruct }`: the defaults, which `pkg/options.js` repeats.

@@ -1,7 +1,52 @@
-use crate::shell::Result;
-pub fn serve(_port: u16) -> Result<()> {
-    Ok(())
+//! `cargo xtask serve` and `cargo xtask bench`.
+
+use crate::build;
+use crate::setup;
+use crate::shell::{Result, command, root, run, say};
+
+/// Builds the package and the page, and serves the page until it is stopped.
+pub fn serve(port: u16) -> Result<()> {
+    build::build()?;
+    page()?;
+    let mut vite = command("npm");
+    vite.current_dir(root().join("www"))
+        .args([
+            "run",
+            "--silent",
+            "preview",
+            "--",
+            "--host",
+            "localhost",
+            "--strictPort",
+            "--port",
+        ])
+        .arg(port.to_string());
+    say(&format!(
+        "the page is at http://localhost:{port}/ until you press Ctrl-C"
+    ));
+    run(
+        &mut vite,
+        &format!("nothing is served any more; if port {port} is taken, choose one with `--port N`"),
+    )
 }
-pub fn bench(_o: &[String]) -> Result<()> {
-    Ok(())
+
+/// The page for production, into www/dist. It imports the package, so that has to be built before.
+pub fn page() -> Result<()> {
+    for folder in ["pkg", "www"] {
+        setup::npm(&root().join(folder))?;
+    }
+    say("building the page");
+    let mut vite = command("npm");
+    vite.current_dir(root().join("www"))
+        .args(["run", "--silent", "build"]);
+    run(&mut vite, "the page did not build; its errors are above")
+}
+
+/// Runs the benchmarks on a fresh build.
+pub fn bench(arguments: &[String]) -> Result<()> {
+    build::build()?;
+    setup::npm(&root().join("tests"))?;
+    let mut bench = command("node");
+    bench.arg("tests/bench/bench.mjs").args(arguments);
+    run(&mut bench, "a benchmark failed; its error is above")
 }
