@@ -54,6 +54,11 @@ pub mod cells;
 pub mod fit;
 pub mod orient;
 pub mod field;
+pub mod extract;
+mod band;
+mod lattice;
+mod loops;
+mod dual;
 pub mod report;
 
 // Beside the pipeline: solids with a known surface and their simulated scans.

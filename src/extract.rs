@@ -1,0 +1,275 @@
+//! The zero set of an implicit function as a mesh: manifold, welded, on a narrow band around the fitted points.
+//!
+//! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
+//! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
+//! 3. Where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//!
+//! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
+
+use crate::band::{grow, span};
+use crate::dual::{Dual, Quad, Vertex, build};
+use crate::error::Result;
+use crate::params::Boundary;
+use crate::progress::Progress;
+use crate::report::Sets;
+use glam::{DVec3, Vec3};
+
+/// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
+/// Positions are in the unit frame.
+pub trait Implicit: Sync {
+    /// Memory that one evaluating worker reuses; what is left in it must not change a result.
+    type Scratch;
+
+    /// A new [`Implicit::Scratch`].
+    fn scratch(&self) -> Self::Scratch;
+
+    /// The fitted value; `None` where no fitted function reaches.
+    fn local(&self, at: DVec3, scratch: &mut Self::Scratch) -> Option<f64>;
+
+    /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
+    fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
+
+    /// The fitted value with its gradient; `None` where no fitted function reaches.
+    fn gradient(&self, at: DVec3, scratch: &mut Self::Scratch) -> Option<(f64, DVec3)>;
+
+    /// [`Implicit::local`] at many positions close to each other, as a field may evaluate faster; NaN stands for
+    /// `None`. `values` has one entry a position.
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch) {
+        for (x, value) in at.iter().zip(values) {
+            *value = self.local(*x, scratch).unwrap_or(f64::NAN);
+        }
+    }
+
+    /// [`Implicit::gradient`] at many positions close to each other. `found` has one entry a position.
+    fn gradients(
+        &self,
+        at: &[DVec3],
+        found: &mut [Option<(f64, DVec3)>],
+        scratch: &mut Self::Scratch,
+    ) {
+        for (x, found) in at.iter().zip(found) {
+            *found = self.gradient(*x, scratch);
+        }
+    }
+}
+
+/// Options of [`extract`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtractParams {
+    /// Edge length of the lattice's cells, unit frame, 1e-4 to 0.25.
+    pub resolution: f64,
+    /// What happens where no fitted function reaches.
+    pub boundary: Boundary,
+    /// Put vertices on creases and corners of the zero set.
+    pub sharp: bool,
+}
+
+/// A triangle mesh in the unit frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Positions; every one is used by a triangle.
+    pub vertices: Vec<Vec3>,
+    /// Unit normals that point outward, one a vertex.
+    pub normals: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What [`extract`] makes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Extracted {
+    /// The surface.
+    pub mesh: Mesh,
+    /// Share of the mesh's area (0-1) where no fitted function reached and the global extension closed it.
+    pub filled: f64,
+    /// Components whose holes were closed.
+    pub closed: usize,
+    /// Components that were left open.
+    pub open: usize,
+}
+
+/// [`Boundary::Auto`] keeps what closes a component as long as it is at most this share of the closed component's area.
+/// A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile 0.5 or more.
+pub const MOST_FILLED: f64 = 0.35;
+
+/// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
+///
+/// The mesh has no edge with more than two triangles, no vertex with more than one fan, no duplicate, degenerate or
+/// flipped triangle, and consistent orientation, whatever the field returns (see `dual`). Its bytes depend on the
+/// field's values only, not on threads or on the order of the points.
+///
+/// Where no fitted function reaches,
+/// - `Open`: the surface ends: it has no triangle in a cell with an unreached corner;
+/// - `Closed`: unreached corners take [`Implicit::global`]; the mesh has no boundary edge, the lattice's hull being
+///   outside;
+/// - `Auto`: like `Closed`, then each connected component gives up what was closed by global values, and stays open, if
+///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
+///   surface; components not closed by then stay open.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`] if `progress` asks for it.
+pub fn extract<F: Implicit>(
+    field: &F,
+    points: &[Vec3],
+    reach: &[f32],
+    params: &ExtractParams,
+    progress: &mut dyn Progress,
+) -> Result<Extracted> {
+    if points.is_empty() {
+        return Ok(Extracted::default());
+    }
+    let lattice = grow(
+        field,
+        (points, reach),
+        params.resolution,
+        params.boundary,
+        &mut span(progress, 0.0, 0.5),
+    )?;
+    let mut dual = build(
+        field,
+        &lattice,
+        params.sharp,
+        &mut span(progress, 0.5, 0.95),
+    )?;
+    let mut result = Extracted::default();
+    decide_holes(&mut dual, params.boundary, &mut result);
+    split_bow_ties(&mut dual);
+    result.mesh = triangulate(dual);
+    span(progress, 0.95, 1.0)(1.0)?;
+    Ok(result)
+}
+
+fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
+    let [p, q, r, s] = quad
+        .vertices
+        .map(|v| vertices[v as usize].position.as_dvec3());
+    ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
+}
+
+/// Quads around each vertex.
+fn degrees(dual: &Dual) -> Vec<u8> {
+    let mut degrees = vec![0; dual.vertices.len()];
+    dual.quads
+        .iter()
+        .flat_map(|q| q.vertices)
+        .for_each(|v| degrees[v as usize] += 1);
+    degrees
+}
+
+/// Drops the filled quads of the components that are better left open.
+fn decide_holes(dual: &mut Dual, boundary: Boundary, result: &mut Extracted) {
+    let mut components = Sets::new(dual.vertices.len());
+    for quad in &dual.quads {
+        quad.vertices[1..]
+            .iter()
+            .for_each(|&v| components.join(quad.vertices[0], v));
+    }
+    // By component: area, filled area, has a boundary.
+    let mut sums = vec![(0.0, 0.0, false); dual.vertices.len()];
+    for quad in &dual.quads {
+        let (sum, area) = (
+            &mut sums[components.find(quad.vertices[0]) as usize],
+            quad_area(quad, &dual.vertices),
+        );
+        sum.0 += area;
+        sum.1 += if quad.filled { area } else { 0.0 };
+    }
+    for (v, degree) in degrees(dual).into_iter().enumerate() {
+        sums[components.find(v as u32) as usize].2 |= degree < dual.vertices[v].degree;
+    }
+    let stays_open = |&(area, filled, has_boundary): &(f64, f64, bool)| {
+        boundary == Boundary::Auto && (has_boundary || filled > MOST_FILLED * area)
+    };
+    dual.quads.retain(|quad| {
+        !quad.filled || !stays_open(&sums[components.find(quad.vertices[0]) as usize])
+    });
+    let (mut area, mut filled) = (0.0, 0.0);
+    for sum in sums.iter().filter(|sum| sum.0 > 0.0) {
+        if stays_open(sum) {
+            area += sum.0 - sum.1;
+            result.open += 1;
+        } else {
+            area += sum.0;
+            filled += sum.1;
+            result.open += usize::from(sum.2);
+            result.closed += usize::from(!sum.2 && sum.1 > 0.0);
+        }
+    }
+    result.filled = if area > 0.0 { filled / area } else { 0.0 };
+}
+
+/// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
+/// an open surface left some out there may be several.
+fn split_bow_ties(dual: &mut Dual) {
+    let degrees = degrees(dual);
+    let is_at_end = |v: u32| degrees[v as usize] < dual.vertices[v as usize].degree;
+    // (vertex, next corner, previous corner, quad) of the quads around vertices at the surface's end.
+    let mut around = Vec::new();
+    for (i, quad) in dual.quads.iter().enumerate() {
+        for k in (0..4).filter(|&k| is_at_end(quad.vertices[k])) {
+            around.push((
+                quad.vertices[k],
+                quad.vertices[(k + 1) % 4],
+                quad.vertices[(k + 3) % 4],
+                i,
+                k,
+            ));
+        }
+    }
+    around.sort_unstable();
+    for fans in around.chunk_by(|a, b| a.0 == b.0) {
+        let starts = fans.iter().filter(|a| fans.iter().all(|b| b.2 != a.1));
+        for start in starts.skip(1) {
+            let copy = dual.vertices.len() as u32;
+            dual.vertices.push(dual.vertices[start.0 as usize]);
+            let mut member = Some(start);
+            while let Some(&(_, _, previous, quad, k)) = member {
+                dual.quads[quad].vertices[k] = copy;
+                member = fans.iter().find(|a| a.1 == previous);
+            }
+        }
+    }
+}
+
+/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
+fn triangulate(dual: Dual) -> Mesh {
+    let mut index = vec![u32::MAX; dual.vertices.len()];
+    dual.quads
+        .iter()
+        .flat_map(|q| q.vertices)
+        .for_each(|v| index[v as usize] = 0);
+    let mut mesh = Mesh {
+        triangles: Vec::with_capacity(2 * dual.quads.len()),
+        ..Mesh::default()
+    };
+    for (vertex, index) in dual
+        .vertices
+        .iter()
+        .zip(&mut index)
+        .filter(|(_, index)| **index == 0)
+    {
+        *index = mesh.vertices.len() as u32;
+        mesh.vertices.push(vertex.position);
+        mesh.normals.push(vertex.normal);
+    }
+    for quad in &dual.quads {
+        let [p, q, r, s] = quad.vertices.map(|v| index[v as usize]);
+        mesh.triangles.extend([[p, q, r], [p, r, s]]);
+    }
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
+        triangle
+            .iter()
+            .for_each(|&v| sums[v as usize] += (b - a).cross(c - a));
+    }
+    for (normal, sum) in mesh
+        .normals
+        .iter_mut()
+        .zip(sums)
+        .filter(|(n, _)| **n == Vec3::ZERO)
+    {
+        *normal = sum.normalize_or(DVec3::Z).as_vec3();
+    }
+    mesh
+}
