@@ -7,8 +7,8 @@ use crate::params::{ReduceParams, SurfaceParams};
 use crate::progress::{Progress, Stage};
 use crate::samples::{self, Model};
 use js_sys::{Float32Array, Function, Object, Reflect, Uint8Array};
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
 
@@ -60,16 +60,40 @@ pub fn defaults() -> JsResult {
     ])
 }
 
-/// A generated scan: `{ positions, colors }` of `model` (`'duck'`, `'pig'`, `'part'`).
+/// Options of [`sample`].
+#[derive(Deserialize)]
+struct SampleOptions {
+    model: String,
+    count: Option<usize>,
+    #[serde(default)]
+    seed: u64,
+}
+
+/// A generated scan: `{ positions, colors }` of `{ model, count, seed }`.
 #[wasm_bindgen]
-pub fn sample(model: &str, count: usize, seed: f64) -> JsResult {
+pub fn sample(options: JsValue) -> JsResult {
+    let SampleOptions { model, count, seed } = from_js(options)?;
     let model =
-        Model::from_name(model).ok_or_else(|| bad_option("model", "duck, pig or part", model))?;
-    let scan = samples::sample(model, count, seed as u64);
+        Model::from_name(&model).ok_or_else(|| bad_option("model", "duck, pig or part", &model))?;
+    let scan = samples::sample(model, count.unwrap_or(model.default_points()), seed);
     object([
         ("positions", Float32Array::from(&scan.positions[..]).into()),
         ("colors", Uint8Array::from(&scan.colors[..]).into()),
     ])
+}
+
+/// Makes the pool of `threads` threads, which workers must lend with [`lend_thread`]. Call it once a memory.
+#[cfg(feature = "threads")]
+#[wasm_bindgen(js_name = buildPool)]
+pub fn build_pool(threads: usize) -> Result<(), JsValue> {
+    crate::pool::build(threads).map_err(|error| Error::Internal(error.to_string()).into())
+}
+
+/// Lends the calling worker's thread to the pool; does not return.
+#[cfg(feature = "threads")]
+#[wasm_bindgen(js_name = lendThread)]
+pub fn lend_thread() {
+    crate::pool::run_worker();
 }
 
 /// Calls `f(stage, fraction)`; a truthy answer, or an exception, stops the job.

@@ -1,0 +1,106 @@
+// Whose memory is whose: inputs are left alone, results belong to the caller.
+
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { reconstruct, reduce } from 'pointweave';
+import { arraysOf, engineFor, rejection, sphere } from './support.mjs';
+
+for (const worker of [false, true]) {
+  const where = worker ? 'with a worker' : 'in process';
+
+  test(`inputs are neither changed nor detached, ${where}`, async (t) => {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const cloud = sphere();
+    const before = structuredClone(cloud);
+    await engine.reduce(cloud);
+    await engine.reconstruct(cloud);
+    await engine.inspect(cloud);
+    assert.deepEqual(cloud, before);
+  });
+
+  test(`transfer takes the buffers over, ${where}`, async (t) => {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const copied = await engine.reduce(sphere());
+    const cloud = sphere();
+    const taken = await engine.reduce(cloud, { transfer: true });
+    for (const [name, array] of Object.entries(arraysOf(cloud))) assert.equal(array.length, 0, name);
+    assert.deepEqual(taken.positions, copied.positions);
+    assert.deepEqual(taken.colors, copied.colors);
+  });
+
+  test(`a rejected call takes nothing over, ${where}`, async (t) => {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const cloud = sphere();
+    await rejection(engine.reduce(cloud, { transfer: true, method: 'none' }));
+    await rejection(engine.reduce(cloud, { transfer: true, signal: AbortSignal.abort() }));
+    assert.equal(cloud.positions.length, 6000);
+  });
+
+  test(`changes after the call do not reach it, ${where}`, async (t) => {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const expected = await engine.reduce(sphere());
+    const cloud = sphere();
+    const promise = engine.reduce(cloud);
+    cloud.positions.fill(NaN);
+    assert.deepEqual((await promise).positions, expected.positions);
+  });
+
+  test(`results own their memory, ${where}`, async (t) => {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const cloud = sphere();
+    const first = await engine.reconstruct(cloud);
+    const kept = structuredClone(arraysOf(first));
+    await engine.reconstruct(sphere(3000));
+    assert.deepEqual(arraysOf(first), kept);
+    for (const [name, array] of Object.entries(arraysOf(first))) {
+      assert.ok(array.buffer instanceof ArrayBuffer, name);
+      assert.equal(array.byteLength, array.buffer.byteLength, `${name} is a view of something larger`);
+      structuredClone(array, { transfer: [array.buffer] }); // throws for wasm's own memory
+    }
+  });
+}
+
+test('views and shared memory come in like any array', async () => {
+  const cloud = sphere();
+  const expected = await reduce(cloud);
+  const wide = new Float32Array(cloud.positions.length + 14);
+  const view = wide.subarray(7, 7 + cloud.positions.length);
+  view.set(cloud.positions);
+  const shared = new Float32Array(new SharedArrayBuffer(cloud.positions.byteLength));
+  shared.set(cloud.positions);
+  for (const positions of [view, shared]) assert.deepEqual((await reduce({ positions })).positions, expected.positions);
+  assert.deepEqual((await reduce({ positions: shared }, { transfer: true })).positions, expected.positions);
+});
+
+test('results have the type of the input, and everything that an input carries', async () => {
+  for (const type of [Float32Array, Float64Array]) {
+    const cloud = { ...sphere(2000, { type }), origin: [4e6, 5e5, 120] };
+    const reduced = await reduce(cloud, { target: { count: 600 } });
+    const mesh = await reconstruct(cloud);
+    for (const part of [reduced, mesh, mesh.cloud]) {
+      assert.ok(part.positions instanceof type);
+      assert.deepEqual(part.origin, cloud.origin);
+      const points = part.positions.length / 3;
+      assert.equal(part.normals.length, 3 * points);
+      assert.equal(part.colors.length, 3 * points);
+      assert.equal(part.attributes.height.length, points);
+      for (let i = 0; i < points; i++) {
+        const z = part.positions[3 * i + 2];
+        assert.ok(Math.abs(part.attributes.height[i] - z) < 0.1, `height ${part.attributes.height[i]} at ${z}`);
+        assert.ok(Math.abs(part.colors[3 * i + 1] - 127.5 * (z + 1)) < 13);
+      }
+    }
+    assert.equal(reduced.positions.length, 1800);
+    assert.equal(reduced.weights.reduce((sum, w) => sum + w, 0), 2000);
+    assert.ok(reduced.nearest.every((i) => i < 2000) && reduced.variation.length === 600);
+  }
+});
+
+test('georeferenced clouds keep their precision', async () => {
+  const center = [4_512_345.678, 543_210.123, 87.5];
+  const here = await reduce(sphere(2000, { type: Float64Array }));
+  const there = await reduce(sphere(2000, { type: Float64Array, center }));
+  for (let i = 0; i < here.positions.length; i++) {
+    assert.ok(Math.abs(there.positions[i] - center[i % 3] - here.positions[i]) < 1e-5);
+  }
+});
