@@ -82,20 +82,6 @@ pub fn sample(options: JsValue) -> JsResult {
     ])
 }
 
-/// Makes the pool of `threads` threads, which workers must lend with [`lend_thread`]. Call it once a memory.
-#[cfg(feature = "threads")]
-#[wasm_bindgen(js_name = buildPool)]
-pub fn build_pool(threads: usize) -> Result<(), JsValue> {
-    crate::pool::build(threads).map_err(|error| Error::Internal(error.to_string()).into())
-}
-
-/// Lends the calling worker's thread to the pool; does not return.
-#[cfg(feature = "threads")]
-#[wasm_bindgen(js_name = lendThread)]
-pub fn lend_thread() {
-    crate::pool::run_worker();
-}
-
 /// Calls `f(stage, fraction)`; a truthy answer, or an exception, stops the job.
 struct JsProgress(Function);
 
