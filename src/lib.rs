@@ -61,7 +61,8 @@ mod loops;
 mod dual;
 pub mod report;
 
-// Beside the pipeline: solids with a known surface and their simulated scans.
+// Beside the pipeline: solids with a known surface and their simulated scans; files.
+pub mod formats;
 pub mod samples;
 
 #[cfg(target_arch = "wasm32")]

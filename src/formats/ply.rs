@@ -1,0 +1,649 @@
+//! PLY (Greg Turk, 1994): a text header that names elements and their properties, then rows, as text or binary.
+//!
+//! Read are all three encodings, all scalar types in both spellings, list properties in any element, elements in any
+//! order, comments and `obj_info` anywhere in the header, and any end of line. The points are the element `vertex`, or
+//! else the first element with x, y and z. Normals are `nx ny nz`, colours `red green blue` (bytes, 16 bits, or floats
+//! from 0 to 1); every other scalar is an attribute, lists are passed over. Elements after the points are not looked at.
+//!
+//! Why not a crate: `ply-rs-bw`, the one that is kept up, reads a row into a map from property name to value or
+//! calls back with the name for each value, reports errors as text, and needs a blocking reader, where columns, a line or byte,
+//! and slices of bytes are wanted here.
+
+use super::lines::{Lines, number, quote};
+use super::table::{Column, Columns, Table, names};
+use super::{Positions, RawCloud};
+use crate::error::{Error, Result};
+use std::fmt::Debug;
+use std::io::Write;
+
+/// A scalar type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn from_name(name: &str) -> Option<Scalar> {
+        Some(match name {
+            "char" | "int8" => Scalar::I8,
+            "uchar" | "uint8" => Scalar::U8,
+            "short" | "int16" => Scalar::I16,
+            "ushort" | "uint16" => Scalar::U16,
+            "int" | "int32" => Scalar::I32,
+            "uint" | "uint32" => Scalar::U32,
+            "float" | "float32" => Scalar::F32,
+            "double" | "float64" => Scalar::F64,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Scalar::I8 | Scalar::U8 => 1,
+            Scalar::I16 | Scalar::U16 => 2,
+            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
+            Scalar::F64 => 8,
+        }
+    }
+
+    /// The value of `size()` bytes.
+    fn value(self, bytes: &[u8], big_endian: bool) -> f64 {
+        let mut raw = [0u8; 8];
+        for (i, &byte) in bytes.iter().enumerate() {
+            raw[if big_endian { bytes.len() - 1 - i } else { i }] = byte;
+        }
+        let [a, b, c, d, ..] = raw;
+        match self {
+            Scalar::I8 => f64::from(a as i8),
+            Scalar::U8 => f64::from(a),
+            Scalar::I16 => f64::from(i16::from_le_bytes([a, b])),
+            Scalar::U16 => f64::from(u16::from_le_bytes([a, b])),
+            Scalar::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+            Scalar::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+            Scalar::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+            Scalar::F64 => f64::from_le_bytes(raw),
+        }
+    }
+}
+
+/// A property: one value, or a count and as many values.
+enum Property {
+    One { name: String, scalar: Scalar },
+    List { count: Scalar, item: Scalar },
+}
+
+struct Element {
+    name: String,
+    rows: u64,
+    properties: Vec<Property>,
+    /// Line of the header that declares it.
+    line: u64,
+}
+
+impl Element {
+    /// Names of the properties that are one value, in order.
+    fn names(&self) -> Vec<String> {
+        let name = |property: &Property| match property {
+            Property::One { name, .. } => Some(name.clone()),
+            Property::List { .. } => None,
+        };
+        self.properties.iter().filter_map(name).collect()
+    }
+
+    /// Bytes of a binary row, an empty list counted for each list; and whether that is every row's size.
+    fn row_size(&self) -> (usize, bool) {
+        let size = |property: &Property| match property {
+            Property::One { scalar, .. } => scalar.size(),
+            Property::List { count, .. } => count.size(),
+        };
+        let fixed = self
+            .properties
+            .iter()
+            .all(|p| matches!(p, Property::One { .. }));
+        (self.properties.iter().map(size).sum(), fixed)
+    }
+
+    /// Which values of a row are what; `None` without x, y and z.
+    fn columns(&self) -> Option<Columns> {
+        let mut columns = Columns::from_names(&self.names())?;
+        let scalars: Vec<Scalar> = self
+            .properties
+            .iter()
+            .filter_map(|property| match property {
+                Property::One { scalar, .. } => Some(*scalar),
+                Property::List { .. } => None,
+            })
+            .collect();
+        columns.color_is_bytes = columns
+            .color
+            .is_some_and(|color| color.iter().all(|&i| scalars[i].size() == 1));
+        Some(columns)
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+struct Header {
+    encoding: Encoding,
+    elements: Vec<Element>,
+    /// Byte and line at which the rows start.
+    end: usize,
+    lines: u64,
+}
+
+/// Whether the content starts as a PLY file does.
+pub(super) fn looks_like(bytes: &[u8]) -> bool {
+    let first = Lines::new(bytes, 0, 0).next().unwrap_or_default();
+    first.trim_ascii() == b"ply"
+}
+
+/// Reads the points.
+pub(super) fn read(bytes: &[u8]) -> Result<RawCloud> {
+    let header = Header::parse(bytes)?;
+    let (index, columns) = header.points()?;
+    let (before, points) = (&header.elements[..index], &header.elements[index]);
+    let mut cloud = match header.encoding {
+        Encoding::Ascii => {
+            let mut rows = AsciiRows {
+                lines: Lines::new(bytes, header.end, header.lines),
+            };
+            before.iter().try_for_each(|element| rows.skip(element))?;
+            // A row of text has at least a digit and a separator for each value.
+            let most = (bytes.len() - rows.lines.at) / (2 * points.properties.len()) + 1;
+            collect(points, columns, most, |row| rows.read(points, row))?
+        }
+        encoding => {
+            let big_endian = encoding == Encoding::BigEndian;
+            let mut rows = BinaryRows {
+                bytes,
+                at: header.end,
+                big_endian,
+            };
+            before.iter().try_for_each(|element| rows.skip(element))?;
+            let most = (bytes.len() - rows.at) / points.row_size().0;
+            collect(points, columns, most, |row| rows.read(points, row))?
+        }
+    };
+    let is_face = |element: &&Element| element.name == "face";
+    cloud.faces = header
+        .elements
+        .iter()
+        .find(is_face)
+        .map_or(0, |face| face.rows);
+    Ok(cloud)
+}
+
+/// All rows of the points; `most` is how many the bytes can hold.
+fn collect(
+    points: &Element,
+    columns: Columns,
+    most: usize,
+    mut read_row: impl FnMut(&mut Vec<f64>) -> Result<()>,
+) -> Result<RawCloud> {
+    let rows = usize::try_from(points.rows).unwrap_or(usize::MAX).min(most);
+    let mut table = Table::new(columns, rows);
+    let mut row = Vec::new();
+    for _ in 0..points.rows {
+        row.clear();
+        read_row(&mut row)?;
+        table.push(&row);
+    }
+    Ok(table.finish())
+}
+
+impl Header {
+    fn parse(bytes: &[u8]) -> Result<Header> {
+        let mut lines = Lines::new(bytes, 0, 0);
+        let first = lines.next().unwrap_or_default();
+        if first.trim_ascii() != b"ply" {
+            return Err(bad_line(1, "\"ply\"", first));
+        }
+        let carriage_return_alone = bytes[first.len()..].first() == Some(&b'\r')
+            && bytes.get(first.len() + 1) != Some(&b'\n');
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        loop {
+            let start = lines.at;
+            let Some(line) = lines.next() else {
+                return Err(Error::BadFile {
+                    format: "PLY",
+                    place: "byte",
+                    at: bytes.len() as u64,
+                    expected: "\"end_header\"".into(),
+                    found: "the end of the file".into(),
+                });
+            };
+            let number = lines.number;
+            let text = String::from_utf8_lossy(line);
+            let words: Vec<&str> = text.split_ascii_whitespace().collect();
+            match words[..] {
+                [] | ["comment" | "obj_info", ..] => {}
+                ["format", name, version] => {
+                    encoding = Some(parse_encoding(name, version, number, line)?)
+                }
+                ["element", name, rows] => elements.push(Element {
+                    name: name.into(),
+                    rows: rows
+                        .parse()
+                        .map_err(|_| bad_line(number, "a count of rows", rows.as_bytes()))?,
+                    properties: Vec::new(),
+                    line: number,
+                }),
+                ["property", ..] => {
+                    let element = elements.last_mut().ok_or_else(|| {
+                        bad_line(number, "an element before its properties", line)
+                    })?;
+                    element
+                        .properties
+                        .push(parse_property(&words, number, line)?);
+                }
+                ["end_header"] => {
+                    let encoding = encoding
+                        .ok_or_else(|| bad_line(number, "a format line before end_header", line))?;
+                    // Where lines end in \r alone, a \n after it is the first byte of the rows.
+                    let end = if carriage_return_alone {
+                        start + line.len() + 1
+                    } else {
+                        lines.at
+                    };
+                    return Ok(Header {
+                        encoding,
+                        elements,
+                        end: end.min(bytes.len()),
+                        lines: number,
+                    });
+                }
+                _ => {
+                    return Err(bad_line(
+                        number,
+                        "a line of a PLY header (format, comment, obj_info, element, property, end_header)",
+                        line,
+                    ));
+                }
+            }
+        }
+    }
+
+    /// The element that holds the points, and its columns.
+    fn points(&self) -> Result<(usize, Columns)> {
+        let missing = |line: u64, found: String| Error::BadFile {
+            format: "PLY",
+            place: "line",
+            at: line,
+            expected: "an element with properties x, y and z".into(),
+            found,
+        };
+        let is_vertex = |element: &Element| element.name == "vertex";
+        let twice = |element: &Element| {
+            let mut names = element.names();
+            names.sort_unstable();
+            names
+                .windows(2)
+                .find(|pair| pair[0] == pair[1])
+                .map(|pair| pair[0].clone())
+        };
+        if let Some(index) = self.elements.iter().position(is_vertex) {
+            let vertex = &self.elements[index];
+            let found = || format!("an element vertex with {}", list(&vertex.names()));
+            let columns = vertex
+                .columns()
+                .ok_or_else(|| missing(vertex.line, found()))?;
+            if let Some(name) = twice(vertex) {
+                return Err(bad_line(
+                    vertex.line,
+                    "properties with different names",
+                    name.as_bytes(),
+                ));
+            }
+            return Ok((index, columns));
+        }
+        let with_xyz = |(index, element): (usize, &Element)| Some((index, element.columns()?));
+        self.elements
+            .iter()
+            .enumerate()
+            .find_map(with_xyz)
+            .ok_or_else(|| {
+                let names: Vec<String> = self
+                    .elements
+                    .iter()
+                    .map(|element| element.name.clone())
+                    .collect();
+                missing(self.lines, format!("elements: {}", list(&names)))
+            })
+    }
+}
+
+fn parse_encoding(name: &str, version: &str, number: u64, line: &[u8]) -> Result<Encoding> {
+    if version != "1.0" {
+        return Err(bad_line(number, "version 1.0", line));
+    }
+    match name {
+        "ascii" => Ok(Encoding::Ascii),
+        "binary_little_endian" => Ok(Encoding::LittleEndian),
+        "binary_big_endian" => Ok(Encoding::BigEndian),
+        _ => Err(bad_line(
+            number,
+            "ascii, binary_little_endian or binary_big_endian",
+            line,
+        )),
+    }
+}
+
+fn parse_property(words: &[&str], number: u64, line: &[u8]) -> Result<Property> {
+    let scalar = |name: &str| {
+        Scalar::from_name(name).ok_or_else(|| {
+            bad_line(
+                number,
+                "a type (char … double, int8 … float64)",
+                name.as_bytes(),
+            )
+        })
+    };
+    match *words {
+        [_, "list", count, item, _] => Ok(Property::List {
+            count: scalar(count)?,
+            item: scalar(item)?,
+        }),
+        [_, kind, name] if kind != "list" => Ok(Property::One {
+            name: name.into(),
+            scalar: scalar(kind)?,
+        }),
+        _ => Err(bad_line(
+            number,
+            "property <type> <name> or property list <type> <type> <name>",
+            line,
+        )),
+    }
+}
+
+/// Rows as text, one a line.
+struct AsciiRows<'a> {
+    lines: Lines<'a>,
+}
+
+impl<'a> AsciiRows<'a> {
+    /// The next line that is not blank.
+    fn line(&mut self, element: &Element) -> Result<&'a [u8]> {
+        let is_row = |line: &&[u8]| !line.trim_ascii().is_empty();
+        self.lines.find(is_row).ok_or_else(|| Error::BadFile {
+            format: "PLY",
+            place: "line",
+            at: self.lines.number + 1,
+            expected: format!(
+                "one of {} rows of element {}",
+                element.rows,
+                quote(element.name.as_bytes())
+            ),
+            found: "the end of the file".into(),
+        })
+    }
+
+    fn skip(&mut self, element: &Element) -> Result<()> {
+        if element.properties.is_empty() {
+            return Ok(());
+        }
+        (0..element.rows).try_for_each(|_| self.line(element).map(|_| ()))
+    }
+
+    /// The values of a row without its lists.
+    fn read(&mut self, element: &Element, row: &mut Vec<f64>) -> Result<()> {
+        let line = self.line(element)?;
+        let at = self.lines.number;
+        let mut tokens = line
+            .split(u8::is_ascii_whitespace)
+            .filter(|token| !token.is_empty());
+        let mut next = || {
+            let token = tokens.next().ok_or_else(|| {
+                let expected = format!("{} values", element.properties.len());
+                bad_line(at, &expected, line)
+            })?;
+            number(token).ok_or_else(|| bad_line(at, "a number", token))
+        };
+        for property in &element.properties {
+            match property {
+                Property::One { .. } => row.push(next()?),
+                Property::List { .. } => {
+                    let count = next()?;
+                    let items =
+                        list_length(count).ok_or_else(|| bad_line(at, "a list's length", line))?;
+                    (0..items).try_for_each(|_| next().map(|_| ()))?;
+                }
+            }
+        }
+        match tokens.next() {
+            None => Ok(()),
+            Some(token) => Err(bad_line(at, "the end of the line", token)),
+        }
+    }
+}
+
+/// Binary rows.
+struct BinaryRows<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    big_endian: bool,
+}
+
+impl<'a> BinaryRows<'a> {
+    /// The next `size` bytes.
+    fn take(&mut self, size: usize, element: &Element) -> Result<&'a [u8]> {
+        let rest = &self.bytes[self.at..];
+        if size > rest.len() {
+            return Err(Error::BadFile {
+                format: "PLY",
+                place: "byte",
+                at: self.at as u64,
+                expected: format!(
+                    "{size} more bytes of {} rows of element {}",
+                    element.rows,
+                    quote(element.name.as_bytes())
+                ),
+                found: format!("{} bytes, then the end of the file", rest.len()),
+            });
+        }
+        self.at += size;
+        Ok(&rest[..size])
+    }
+
+    fn value(&mut self, scalar: Scalar, element: &Element) -> Result<f64> {
+        let big_endian = self.big_endian;
+        Ok(scalar.value(self.take(scalar.size(), element)?, big_endian))
+    }
+
+    fn skip(&mut self, element: &Element) -> Result<()> {
+        let (size, fixed) = element.row_size();
+        if fixed {
+            let total = (size as u64).saturating_mul(element.rows);
+            self.take(usize::try_from(total).unwrap_or(usize::MAX), element)?;
+            return Ok(());
+        }
+        let mut row = Vec::new();
+        for _ in 0..element.rows {
+            row.clear();
+            self.read(element, &mut row)?;
+        }
+        Ok(())
+    }
+
+    /// The values of a row without its lists.
+    fn read(&mut self, element: &Element, row: &mut Vec<f64>) -> Result<()> {
+        for property in &element.properties {
+            match property {
+                Property::One { scalar, .. } => row.push(self.value(*scalar, element)?),
+                Property::List { count, item } => {
+                    let at = self.at;
+                    let length = self.value(*count, element)?;
+                    let items = list_length(length).ok_or_else(|| Error::BadFile {
+                        format: "PLY",
+                        place: "byte",
+                        at: at as u64,
+                        expected: "a list's length".into(),
+                        found: length.to_string(),
+                    })?;
+                    self.take(items.saturating_mul(item.size()), element)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A list's length from its value in the file.
+fn list_length(value: f64) -> Option<usize> {
+    (value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0).then_some(value as usize)
+}
+
+fn bad_line(at: u64, expected: &str, found: &[u8]) -> Error {
+    let found = if found.is_empty() {
+        "nothing".into()
+    } else {
+        quote(found)
+    };
+    Error::BadFile {
+        format: "PLY",
+        place: "line",
+        at,
+        expected: expected.into(),
+        found,
+    }
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() {
+        "none".into()
+    } else {
+        quote(names.join(", ").as_bytes())
+    }
+}
+
+/// Writes points and, with `triangles`, faces. Positions are `double` where they or the origin need it.
+pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>, ascii: bool) -> Vec<u8> {
+    let double = cloud.origin.is_some() || matches!(cloud.positions, Positions::F64(_));
+    let mut out = write_header(cloud, triangles, ascii, double).into_bytes();
+    let origin = cloud.origin.unwrap_or_default();
+    let mut sink = Sink {
+        out: &mut out,
+        ascii,
+        first: true,
+    };
+    for i in 0..cloud.points() {
+        for (axis, start) in origin.iter().enumerate() {
+            let x = cloud.positions.get(3 * i + axis) + start;
+            if double {
+                sink.f64(x)
+            } else {
+                sink.f32(x as f32)
+            }
+        }
+        for &n in cloud
+            .normals
+            .iter()
+            .flat_map(|normals| &normals[3 * i..3 * i + 3])
+        {
+            sink.f32(n);
+        }
+        for &c in cloud
+            .colors
+            .iter()
+            .flat_map(|colors| &colors[3 * i..3 * i + 3])
+        {
+            sink.u8(c);
+        }
+        for attribute in &cloud.attributes {
+            sink.f32(attribute.values[i]);
+        }
+        sink.end_row();
+    }
+    for triangle in triangles.unwrap_or_default().chunks_exact(3) {
+        sink.u8(3);
+        triangle.iter().for_each(|&index| sink.u32(index));
+        sink.end_row();
+    }
+    out
+}
+
+fn write_header(cloud: &RawCloud, triangles: Option<&[u32]>, ascii: bool, double: bool) -> String {
+    let encoding = if ascii {
+        "ascii"
+    } else {
+        "binary_little_endian"
+    };
+    let mut header = format!(
+        "ply\nformat {encoding} 1.0\ncomment Pointweave\nelement vertex {}\n",
+        cloud.points()
+    );
+    for (name, column) in names(cloud) {
+        let kind = match column {
+            Column::Position if double => "double",
+            Column::Position | Column::Float => "float",
+            Column::Byte => "uchar",
+        };
+        header += &format!("property {kind} {name}\n");
+    }
+    if let Some(indices) = triangles {
+        // Signed, as most readers expect.
+        header += &format!(
+            "element face {}\nproperty list uchar int vertex_indices\n",
+            indices.len() / 3
+        );
+    }
+    header + "end_header\n"
+}
+
+/// Values into rows: little endian bytes, or text that reads back to the same bits.
+struct Sink<'a> {
+    out: &'a mut Vec<u8>,
+    ascii: bool,
+    /// No value of the row was written yet.
+    first: bool,
+}
+
+impl Sink<'_> {
+    fn put(&mut self, bytes: &[u8], text: &dyn Debug) {
+        if !self.ascii {
+            self.out.extend(bytes);
+            return;
+        }
+        if !self.first {
+            self.out.push(b' ');
+        }
+        self.first = false;
+        // Writing to a vector cannot fail.
+        let _ = write!(self.out, "{text:?}");
+    }
+
+    fn f64(&mut self, value: f64) {
+        self.put(&value.to_le_bytes(), &value);
+    }
+
+    fn f32(&mut self, value: f32) {
+        self.put(&value.to_le_bytes(), &value);
+    }
+
+    fn u8(&mut self, value: u8) {
+        self.put(&[value], &value);
+    }
+
+    fn u32(&mut self, value: u32) {
+        self.put(&value.to_le_bytes(), &value);
+    }
+
+    fn end_row(&mut self) {
+        if self.ascii {
+            self.out.push(b'\n');
+            self.first = true;
+        }
+    }
+}

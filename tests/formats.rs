@@ -1,0 +1,681 @@
+//! Readers and writers: files that others made, round trips, and damaged input.
+
+use pointweave::cloud::Attribute;
+use pointweave::error::Error;
+use pointweave::formats::{Format, Positions, RawCloud, WriteOptions, detect, read, write};
+use pointweave::rng::Rng;
+use std::path::PathBuf;
+
+/// What a file is expected to give: points left out and kept, or an error code with the line or byte.
+#[derive(Debug, PartialEq)]
+enum Outcome {
+    /// Points.
+    Cloud(usize),
+    /// Points, and rows dropped because they are not finite.
+    Dropped(usize, usize),
+    /// Code, and where.
+    Fails(&'static str, Option<u64>),
+}
+use Outcome::{Cloud, Dropped, Fails};
+
+/// Every PLY, XYZ, PTS and TXT file of the shared data.
+const FILES: [(&str, Outcome); 54] = [
+    (
+        "hostile/assimp_crash-30d6d0f7c529b3b66b4131700b7a4580cd7082df.ply",
+        Fails("bad-file", Some(7)),
+    ),
+    (
+        "hostile/assimp_cube_binary_header_with_RN_newline.ply",
+        Cloud(8),
+    ),
+    ("hostile/assimp_empty.ply", Fails("bad-file", Some(1))),
+    ("hostile/assimp_float-color.ply", Cloud(3)),
+    ("hostile/assimp_points.ply", Cloud(4)),
+    ("hostile/draco_float_inf_point_cloud.ply", Dropped(13, 3)),
+    ("hostile/draco_int_point_cloud.ply", Cloud(16)),
+    ("hostile/draco_test_extra_whitespace.ply", Cloud(3)),
+    ("hostile/draco_test_more_datatypes.ply", Cloud(3)),
+    ("hostile/gaussian_train-1000.ply", Cloud(1000)),
+    ("hostile/happly_platonic_shelf_big_endian.ply", Cloud(50)),
+    ("hostile/pcu_bunny_duplicates.ply", Cloud(2895)),
+    ("hostile/pdal_issue_2421.ply", Cloud(1)),
+    ("hostile/pdal_mesh.ply", Cloud(4)),
+    ("hostile/pdal_no_vertex.ply", Fails("bad-file", Some(3))),
+    ("hostile/pdal_simple_text.ply", Cloud(3)),
+    ("hostile/pdal_unsized_dims.ply", Fails("bad-file", Some(4))),
+    (
+        "hostile/plyrs_all_atomic_types_ok_ascii.ply",
+        Fails("bad-file", Some(22)),
+    ),
+    (
+        "hostile/plyrs_exponent_values_ok_ascii.ply",
+        Fails("bad-file", Some(8)),
+    ),
+    ("hostile/plyrs_greg_turk_example2_ok_ascii.ply", Cloud(8)),
+    (
+        "hostile/plyrs_single_elements_err_ascii.ply",
+        Fails("bad-file", Some(8)),
+    ),
+    ("hostile/pyntcloud_diamond_ascii_vertex_index.ply", Cloud(6)),
+    ("hostile/trimesh_ply_empty_bin.ply", Cloud(0)),
+    (
+        "hostile/trimesh_ply_empty_header.ply",
+        Fails("bad-file", Some(3)),
+    ),
+    ("hostile/trimesh_ply_points_bin.ply", Cloud(8)),
+    ("hostile/trimesh_points_ascii_with_lists.ply", Cloud(5)),
+    ("hostile/trimesh_points_emptyface.ply", Cloud(1024)),
+    ("hostile/pdal_bunny_8.pts", Cloud(9)),
+    ("hostile/pdal_badheader.txt", Fails("bad-file", Some(1))),
+    ("hostile/pdal_crlf_test.txt", Cloud(10)),
+    ("hostile/pdal_utm17_1.txt", Cloud(10)),
+    ("hostile/trimesh_points_agisoft.xyz", Cloud(100)),
+    ("hostile/trimesh_points_cloudcompare.xyz", Cloud(101)),
+    ("scans/ball.ply", Cloud(31_374)),
+    ("scans/oni.ply", Cloud(1_435)),
+    ("scans/redwood_fragment_002.ply", Cloud(112_698)),
+    ("scans/bunnyData.pts", Cloud(30_571)),
+    ("scans/distcap.pts", Fails("bad-file", Some(3))),
+    ("scans/findsurface_sample.xyz", Cloud(9_664)),
+    ("scans/kitten.xyz", Cloud(5_210)),
+    ("scans/sphere_20k_normal.xyz", Cloud(21_000)),
+    ("scans/bunny_raw/bun000.ply", Cloud(40_256)),
+    ("scans/bunny_raw/bun045.ply", Cloud(40_097)),
+    ("scans/bunny_raw/bun090.ply", Cloud(30_379)),
+    ("scans/bunny_raw/bun180.ply", Cloud(40_251)),
+    ("scans/bunny_raw/bun270.ply", Cloud(31_701)),
+    ("scans/bunny_raw/bun315.ply", Cloud(35_336)),
+    ("scans/bunny_raw/chin.ply", Cloud(37_738)),
+    ("scans/bunny_raw/ear_back.ply", Cloud(32_193)),
+    ("scans/bunny_raw/top2.ply", Cloud(38_298)),
+    ("scans/bunny_raw/top3.ply", Cloud(36_023)),
+    ("scans/cad_scans/Range_Hood_4_BB1.6.ply", Cloud(10_074)),
+    ("scans/cad_scans/Range_Hood_4_filtered.ply", Cloud(2_761)),
+    ("scans/cad_scans/Separator_1_filtered.ply", Cloud(6_046)),
+];
+
+/// The folder of shared data, or `None` with a printed line.
+fn data() -> Option<PathBuf> {
+    let shared = std::env::var_os("POINTWEAVE_SHARED").map(PathBuf::from);
+    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared");
+    let data = shared.unwrap_or_else(beside).join("data");
+    if data.is_dir() {
+        return Some(data);
+    }
+    println!(
+        "SKIPPED: no shared data at {}; set POINTWEAVE_SHARED",
+        data.display()
+    );
+    None
+}
+
+fn read_named(bytes: &[u8], name: &str) -> Result<RawCloud, Error> {
+    detect(bytes, Some(name)).and_then(|format| read(bytes, format))
+}
+
+fn outcome(result: &Result<RawCloud, Error>) -> Outcome {
+    match result {
+        Ok(cloud) if cloud.dropped > 0 => Dropped(cloud.points(), cloud.dropped),
+        Ok(cloud) => Cloud(cloud.points()),
+        Err(error) => Fails(error.code(), error.index()),
+    }
+}
+
+fn values(positions: &Positions) -> Vec<f64> {
+    match positions {
+        Positions::F32(values) => values.iter().map(|&x| f64::from(x)).collect(),
+        Positions::F64(values) => values.clone(),
+    }
+}
+
+fn bounds(cloud: &RawCloud) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in values(&cloud.positions).chunks(3) {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    (low, high)
+}
+
+#[test]
+fn every_shared_file_ends_in_the_right_result_or_a_typed_error() {
+    let Some(data) = data() else { return };
+    for (name, expected) in &FILES {
+        let bytes = std::fs::read(data.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let result = read_named(&bytes, name);
+        assert_eq!(
+            &outcome(&result),
+            expected,
+            "{name}: {:?}",
+            result.as_ref().err()
+        );
+        if let Err(error) = result {
+            println!("{name}: {error}");
+            assert!(error.to_string().lines().count() == 1, "{name}: {error}");
+        }
+    }
+}
+
+/// Name, size of the bounding box, colours, normals, names of attributes.
+type Facts = (&'static str, [f64; 3], bool, bool, &'static [&'static str]);
+
+#[test]
+fn sizes_and_kinds_are_as_the_data_readme_says() {
+    let Some(data) = data() else { return };
+    const FACTS: [Facts; 17] = [
+        (
+            "scans/bunny_raw/bun000.ply",
+            [0.1558, 0.1522, 0.1174],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "meshes/bun_zipper.ply",
+            [0.1557, 0.1543, 0.1207],
+            false,
+            false,
+            &["confidence", "intensity"],
+        ),
+        ("scans/oni.ply", [0.5888, 1.0, 0.7537], false, true, &[]),
+        (
+            "scans/ball.ply",
+            [84.76, 72.43, 81.0],
+            false,
+            true,
+            &["segment_index"],
+        ),
+        (
+            "scans/redwood_fragment_002.ply",
+            [2.32, 1.458, 2.069],
+            true,
+            false,
+            &[],
+        ),
+        (
+            "scans/kitten.xyz",
+            [0.651, 0.9986, 0.5906],
+            false,
+            true,
+            &[],
+        ),
+        (
+            "scans/sphere_20k_normal.xyz",
+            [2.169, 2.175, 2.223],
+            false,
+            true,
+            &[],
+        ),
+        (
+            "scans/bunnyData.pts",
+            [0.1557, 0.1473, 0.1207],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "scans/findsurface_sample.xyz",
+            [1.407, 0.8492, 0.8362],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "hostile/trimesh_points_agisoft.xyz",
+            [16.5, 41.4, 12.39],
+            true,
+            false,
+            &[],
+        ),
+        (
+            "hostile/trimesh_points_cloudcompare.xyz",
+            [16.5, 83.8, 17.85],
+            true,
+            false,
+            &["intensity"],
+        ),
+        (
+            "hostile/pdal_crlf_test.txt",
+            [4.35, 1.98, 0.18],
+            false,
+            false,
+            &["Intensity"],
+        ),
+        (
+            "hostile/happly_platonic_shelf_big_endian.ply",
+            [13.49, 2.316, 2.316],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "hostile/pcu_bunny_duplicates.ply",
+            [0.9989, 0.9795, 0.7701],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "hostile/trimesh_points_emptyface.ply",
+            [265.5, 209.4, 167.8],
+            false,
+            false,
+            &[],
+        ),
+        (
+            "hostile/pyntcloud_diamond_ascii_vertex_index.ply",
+            [1.0, 1.0, 1.0],
+            true,
+            true,
+            &["alpha"],
+        ),
+        (
+            "hostile/draco_int_point_cloud.ply",
+            [388.0, 268.0, 7.0],
+            false,
+            false,
+            &[],
+        ),
+    ];
+    for (name, size, colors, normals, attributes) in FACTS {
+        let bytes = std::fs::read(data.join(name)).unwrap();
+        let cloud = read_named(&bytes, name).unwrap();
+        let (low, high) = bounds(&cloud);
+        for axis in 0..3 {
+            let found = high[axis] - low[axis];
+            let off = (found - size[axis]).abs();
+            assert!(
+                off <= 6e-4 * size[axis],
+                "{name} axis {axis}: {found} is not {}",
+                size[axis]
+            );
+        }
+        assert_eq!(cloud.colors.is_some(), colors, "{name}");
+        assert_eq!(cloud.normals.is_some(), normals, "{name}");
+        let names: Vec<&str> = cloud.attributes.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names, attributes, "{name}");
+    }
+}
+
+#[test]
+fn georeferenced_coordinates_stay_exact() {
+    let Some(data) = data() else { return };
+    let name = "hostile/pdal_utm17_1.txt";
+    let cloud = read_named(&std::fs::read(data.join(name)).unwrap(), name).unwrap();
+    let Positions::F64(positions) = &cloud.positions else {
+        panic!("{name} does not fit single precision")
+    };
+    assert_eq!(positions[..3], [289_814.15, 4_320_978.61, 170.76]);
+    for format in Format::ALL {
+        for ascii in [false, true] {
+            let bytes = write(&cloud, None, format, WriteOptions { ascii }).unwrap();
+            assert_eq!(read(&bytes, format).unwrap().positions, cloud.positions);
+        }
+    }
+}
+
+#[test]
+fn origin_is_added_in_double_precision() {
+    let mut cloud = RawCloud::new(Positions::F32(vec![0.25, 0.5, 0.75, 1.0, 2.0, 3.0]));
+    cloud.origin = Some([500_000.0, 4_000_000.0, 100.0]);
+    for format in Format::ALL {
+        let bytes = write(&cloud, None, format, WriteOptions::default()).unwrap();
+        let expected = [
+            500_000.25,
+            4_000_000.5,
+            100.75,
+            500_001.0,
+            4_000_002.0,
+            103.0,
+        ];
+        assert_eq!(values(&read(&bytes, format).unwrap().positions), expected);
+    }
+}
+
+#[test]
+fn colours_come_in_bytes_floats_and_sixteen_bits() {
+    let ply = |kind: &str, values: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+             property {kind} red\nproperty {kind} green\nproperty {kind} blue\nend_header\n0 0 0 {values}\n1 1 1 0 0 0\n"
+        )
+    };
+    for (kind, text, bytes) in [
+        ("uchar", "255 1 0", [255, 1, 0]),
+        ("uchar", "1 1 0", [1, 1, 0]),
+        ("float", "1 0.5 0", [255, 128, 0]),
+        ("float", "200 100 0", [200, 100, 0]),
+        ("ushort", "65535 257 0", [255, 1, 0]),
+        ("int", "300 -5 0", [1, 0, 0]),
+    ] {
+        let cloud = read(ply(kind, text).as_bytes(), Format::Ply).unwrap();
+        assert_eq!(cloud.colors.unwrap()[..3], bytes, "{kind} {text}");
+    }
+}
+
+#[test]
+fn text_dialects_without_names_are_told_apart() {
+    let all: [(&str, &[&str]); 15] = [
+        ("0 0 0\n1 2 3", &[]),
+        ("0,0,0,\n1,2,3,", &[]),
+        ("0;0;0\n1,5;2,5;3,5", &[]),
+        ("0\t0\t0\n1 2\t3 ", &[]),
+        ("0 0 0 0.5\n1 2 3 0.7", &["intensity"]),
+        ("0 0 0 0 0.6 -0.8\n1 2 3 1 0 0", &["normals"]),
+        ("0 0 0 0 0 9\n1 2 3 255 7 0", &["colors"]),
+        ("0 0 0 0 0 0.1\n1 2 3 1 0.5 0", &["colors"]),
+        (
+            "0 0 0 0 0 300\n1 2 3 1 0.5 -4",
+            &["column4", "column5", "column6"],
+        ),
+        (
+            "2\n0 0 0 17 0 0 9\n1 2 3 18 255 7 0",
+            &["colors", "intensity"],
+        ),
+        (
+            "0 0 0 -900 0 0 9\n1 2 3 18 255 7 0",
+            &["colors", "intensity"],
+        ),
+        (
+            "0 0 0 0 0 9 1 0 0\n1 2 3 255 7 0 0 1 0",
+            &["normals", "colors"],
+        ),
+        (
+            "0 0 0 1 0 0 0 0 9\n1 2 3 0 1 0 255 7 0",
+            &["normals", "colors"],
+        ),
+        (
+            "//X Y Z Nx Ny Nz Class\n0 0 0 3 0 0 4\n1 2 3 0 1 0 9",
+            &["normals", "Class"],
+        ),
+        (
+            "\"x\",\"y\",\"z\",\"r\",\"g\",\"b\"\n0,0,0,1,2,3\n1,2,3,4,5,6",
+            &["colors"],
+        ),
+    ];
+    for (text, expected) in all {
+        let cloud = read(text.as_bytes(), Format::Xyz).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let mut found: Vec<&str> = Vec::new();
+        found.extend(cloud.normals.as_ref().map(|_| "normals"));
+        found.extend(cloud.colors.as_ref().map(|_| "colors"));
+        found.extend(cloud.attributes.iter().map(|a| a.name.as_str()));
+        assert_eq!(found, expected, "{text}");
+        assert_eq!(cloud.points(), 2, "{text}");
+    }
+    let decimal_commas = read(b"0;0;0\n1,5;2,5;3,5", Format::Xyz).unwrap();
+    assert_eq!(
+        decimal_commas.positions,
+        Positions::F32(vec![0.0, 0.0, 0.0, 1.5, 2.5, 3.5])
+    );
+    let pts = read(b"2\n0 0 0 17 0 0 9\n1 2 3 18 255 7 0", Format::Xyz).unwrap();
+    assert_eq!(pts.attributes[0].values, [17.0, 18.0]);
+}
+
+#[test]
+fn text_that_is_no_table_says_the_line() {
+    for (text, line) in [
+        ("", 0),
+        ("# nothing\n\n", 2),
+        ("0 0 0\n1 2\n", 2),
+        ("0 0 0\n\n1 2 3 4\n", 3),
+        ("0 0 0\n1 2 x\n", 2),
+        ("1 2\n3 4\n", 1),
+        ("x,y\n1,2\n", 1),
+        ("x,y,z,X\n1,2,3,4\n", 1),
+        ("x,y,z\n1,2,3,4\n", 2),
+        ("1,,3\n", 1),
+        ("3\n0 0 0\n1 1 1\n", 3),
+        ("hello world\n", 1),
+    ] {
+        let error = read(text.as_bytes(), Format::Xyz).unwrap_err();
+        assert_eq!(
+            (error.code(), error.index()),
+            ("bad-file", Some(line)),
+            "{text:?}: {error}"
+        );
+    }
+    assert_eq!(read(b"x y z\n", Format::Xyz).unwrap().points(), 0);
+    assert_eq!(
+        read(b"\xff\xfe1\x00", Format::Xyz).unwrap_err().code(),
+        "unsupported-file"
+    );
+}
+
+#[test]
+fn content_decides_the_format_before_the_name() {
+    let found = |bytes: &[u8], name| detect(bytes, name).map_err(|e| e.code());
+    assert_eq!(found(b"ply\r\nformat", Some("a.xyz")), Ok(Format::Ply));
+    assert_eq!(found(b"# c\n\n1 2 3\n", None), Ok(Format::Xyz));
+    assert_eq!(found(b"1 2 3\n", Some("a.ply")), Ok(Format::Xyz));
+    assert_eq!(found(b"", Some("A.PLY")), Ok(Format::Ply));
+    assert_eq!(found(b"garbage", Some("scan.csv")), Ok(Format::Xyz));
+    for unknown in [
+        &b"garbage"[..],
+        b"",
+        b"\x00\x01",
+        b"LASF\x00",
+        b"solid x",
+        b"# .PCD v0.7",
+    ] {
+        assert_eq!(found(unknown, None), Err("unknown-format"));
+    }
+    assert_eq!(found(b"LASF", Some("a.ply")), Err("unknown-format"));
+}
+
+/// A cloud with everything in it; values that need all their digits.
+fn full_cloud(points: usize) -> RawCloud {
+    let mut rng = Rng::new(3);
+    let mut floats = |n: usize| -> Vec<f32> { (0..n).map(|_| rng.normal() as f32).collect() };
+    let mut cloud = RawCloud::new(Positions::F32(floats(3 * points)));
+    cloud.normals = Some(floats(3 * points));
+    cloud.attributes = vec![
+        Attribute {
+            name: "intensity".into(),
+            values: floats(points),
+        },
+        Attribute {
+            name: "scan_angle".into(),
+            values: floats(points),
+        },
+    ];
+    cloud.colors = Some((0..3 * points).map(|i| (i * 37 % 256) as u8).collect());
+    cloud
+}
+
+#[test]
+fn what_is_written_reads_back_to_the_same_bits() {
+    let mut cloud = full_cloud(257);
+    for format in Format::ALL {
+        for ascii in [false, true] {
+            let bytes = write(&cloud, None, format, WriteOptions { ascii }).unwrap();
+            assert_eq!(detect(&bytes, None).unwrap(), format);
+            assert_eq!(
+                read(&bytes, format).unwrap(),
+                cloud,
+                "{format:?} ascii {ascii}"
+            );
+        }
+    }
+    let triangles = [0, 1, 2, 2, 1, 3];
+    for ascii in [false, true] {
+        let bytes = write(
+            &cloud,
+            Some(&triangles),
+            Format::Ply,
+            WriteOptions { ascii },
+        )
+        .unwrap();
+        cloud.faces = 2;
+        assert_eq!(read(&bytes, Format::Ply).unwrap(), cloud);
+    }
+}
+
+#[test]
+fn a_triangle_is_written_byte_for_byte() {
+    let cloud = RawCloud::new(Positions::F32(vec![
+        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0,
+    ]));
+    let text = write(
+        &cloud,
+        Some(&[0, 1, 2]),
+        Format::Ply,
+        WriteOptions { ascii: true },
+    )
+    .unwrap();
+    let expected = "ply\nformat ascii 1.0\ncomment Pointweave\nelement vertex 3\nproperty float x\nproperty float y\n\
+                    property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+                    0.0 0.0 0.0\n1.0 0.0 0.0\n0.0 1.0 0.0\n3 0 1 2\n";
+    assert_eq!(String::from_utf8(text).unwrap(), expected);
+}
+
+#[test]
+fn names_of_attributes_never_clash() {
+    let mut cloud = full_cloud(2);
+    cloud.attributes[0].name = "red".into();
+    cloud.attributes[1].name = "my value".into();
+    for format in Format::ALL {
+        let bytes = write(&cloud, None, format, WriteOptions::default()).unwrap();
+        let back = read(&bytes, format).unwrap();
+        assert_eq!(back.colors, cloud.colors);
+        assert_eq!(back.attributes.len(), 2, "{format:?}");
+        assert_eq!(back.attributes[0].name, "red_");
+        assert_eq!(back.attributes[1].name, "my_value");
+    }
+}
+
+#[test]
+fn arrays_of_the_wrong_length_are_not_written() {
+    let mut cloud = full_cloud(2);
+    cloud.colors = Some(vec![0; 5]);
+    for format in Format::ALL {
+        let error = write(&cloud, None, format, WriteOptions::default()).unwrap_err();
+        assert_eq!(error.code(), "bad-length");
+    }
+    let error = write(
+        &full_cloud(3),
+        Some(&[0, 1]),
+        Format::Ply,
+        WriteOptions::default(),
+    )
+    .unwrap_err();
+    assert_eq!(error.code(), "bad-length");
+}
+
+#[test]
+fn values_that_are_not_finite_are_counted() {
+    let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+        property double time\nend_header\n0 0 0 1\nnan 0 0 2\n1 1 1 -1.#IND\n";
+    let cloud = read(ply, Format::Ply).unwrap();
+    assert_eq!((cloud.points(), cloud.dropped, cloud.replaced), (2, 1, 1));
+    assert_eq!(cloud.attributes[0].values, [1.0, 0.0]);
+    assert!(cloud.to_cloud().is_ok());
+}
+
+/// Small valid files of every kind.
+fn small_files() -> Vec<(Format, Vec<u8>)> {
+    let cloud = full_cloud(5);
+    let mut files: Vec<(Format, Vec<u8>)> = Vec::new();
+    for ascii in [false, true] {
+        files.push((
+            Format::Ply,
+            write(
+                &cloud,
+                Some(&[0, 1, 2]),
+                Format::Ply,
+                WriteOptions { ascii },
+            )
+            .unwrap(),
+        ));
+    }
+    files.push((
+        Format::Xyz,
+        write(&cloud, None, Format::Xyz, WriteOptions::default()).unwrap(),
+    ));
+    files.push((
+        Format::Xyz,
+        b"3\r\n0 0 0 1 9 8 7\r\n1 1 1 2 9 8 7\r\n\r\n2 2 2 3 9 8 7\r\n".to_vec(),
+    ));
+    let mut lists = b"ply\nformat binary_big_endian 1.0\nelement edge 2\nproperty list ushort short v\nproperty char c\n\
+        element vertex 2\nproperty list uchar double w\nproperty float x\nproperty double y\nproperty int z\nend_header\n"
+        .to_vec();
+    for _ in 0..2 {
+        lists.extend([0, 2, 1, 2, 3, 4, 5]);
+    }
+    for i in 0..2u8 {
+        lists.push(i);
+        lists.extend(vec![7; 8 * usize::from(i)]);
+        lists.extend(1.5f32.to_be_bytes());
+        lists.extend(2.5f64.to_be_bytes());
+        lists.extend((-3i32).to_be_bytes());
+    }
+    files.push((Format::Ply, lists));
+    files
+}
+
+#[test]
+fn lists_and_elements_before_the_points_are_passed_over() {
+    let (format, bytes) = small_files().pop().unwrap();
+    let cloud = read(&bytes, format).unwrap();
+    assert_eq!(
+        cloud.positions,
+        Positions::F32(vec![1.5, 2.5, -3.0, 1.5, 2.5, -3.0])
+    );
+}
+
+#[test]
+fn truncated_files_give_a_typed_error_or_whole_points() {
+    for (format, bytes) in small_files() {
+        let whole = read(&bytes, format).unwrap().points();
+        for length in 0..bytes.len() {
+            match read(&bytes[..length], format) {
+                Ok(cloud) => assert!(cloud.points() <= whole, "{length} of {}", bytes.len()),
+                Err(error) => assert_eq!(error.code(), "bad-file", "{length}: {error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let mut rng = Rng::new(11);
+    for (format, bytes) in small_files() {
+        for _ in 0..4000 {
+            let mut damaged = bytes.clone();
+            for _ in 0..1 + rng.next_u64() % 4 {
+                let at = (rng.next_u64() % damaged.len() as u64) as usize;
+                match rng.next_u64() % 3 {
+                    0 => damaged[at] = rng.next_u64() as u8,
+                    1 => drop(damaged.remove(at)),
+                    _ => damaged.insert(at, b"0 9\n-ex."[(rng.next_u64() % 8) as usize]),
+                }
+            }
+            if let Ok(cloud) = read(&damaged, format) {
+                let numbers = values(&cloud.positions);
+                assert!(numbers.iter().all(|x| x.is_finite()) && numbers.len().is_multiple_of(3));
+            }
+            let _ = detect(&damaged, None);
+        }
+    }
+}
+
+#[test]
+fn a_header_that_lies_about_counts_reserves_nothing() {
+    for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        for before in [
+            "",
+            "element face 18446744073709551615\nproperty list uint double v\n",
+            "element nothing 18446744073709551615\n",
+        ] {
+            let text = format!(
+                "ply\nformat {encoding} 1.0\n{before}element vertex 18446744073709551615\n\
+                 property float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
+            );
+            let error = read(text.as_bytes(), Format::Ply).unwrap_err();
+            assert_eq!(error.code(), "bad-file", "{encoding} {before}: {error}");
+        }
+    }
+    let error = read(b"99999999999999999999\n1 2 3\n", Format::Xyz).unwrap_err();
+    assert_eq!(error.code(), "bad-file");
+}
