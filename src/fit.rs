@@ -94,8 +94,10 @@ pub struct Fits {
 const OFFSET: [f32; 2] = [0.6, 1.5];
 /// How often a sub-domain may be cut.
 const MAX_CUTS: usize = 2;
-/// Ridges tried in turn until the residual is the noise, in units of φ at one spacing.
-const RIDGES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0];
+/// How strongly surfaces of unit diagonal vary at unit distance, as the factor of r³ in their covariance. Measured on
+/// bunny, armadillo and fandisk, full and reduced, at noise 0.1 and 0.5 %: errors are lowest for 0.17 to 0.33 and 5 %
+/// higher at half and twice that.
+const ROUGHNESS: f64 = 0.25;
 
 /// Fits every sub-domain and refines those that miss the accuracy at the `input` points.
 ///
@@ -207,8 +209,8 @@ fn input_of_sites(sites: &Sites, input: &Octree) -> Vec<Vec<u32>> {
 fn fit_one(subdomain: &Subdomain, sites: &Sites, params: &SurfaceParams) -> LocalFit {
     let system = System::new(subdomain, sites, params.kernel);
     let solved = match params.smoothing {
-        Smoothing::Ridge(ridge) => system.solve(ridge),
-        Smoothing::Auto => system.solve_to_noise(sites.noise as f64),
+        Smoothing::Ridge(ridge) => system.solve(ridge * system.unit_phi),
+        Smoothing::Auto => system.solve(system.ridge_for(sites.noise as f64)),
     };
     solved.unwrap_or_else(|| system.plane(subdomain))
 }
@@ -281,7 +283,7 @@ impl System {
                 m[(i, j)] = value;
                 m[(j, i)] = value;
             }
-            m[(j, j)] = ridge * self.unit_phi;
+            m[(j, j)] = ridge;
             for (row, value) in [
                 1.0,
                 self.centers[j][0],
@@ -304,27 +306,10 @@ impl System {
         Some(self.fitted(&h.as_slice()[..k], [h[k], h[k + 1], h[k + 2], h[k + 3]]))
     }
 
-    /// The smallest ridge at which the rms value at the sites reaches the noise (Morozov's discrepancy principle).
-    fn solve_to_noise(&self, noise: f64) -> Option<LocalFit> {
-        let mut best = None;
-        for ridge in RIDGES {
-            let Some(f) = self.solve(ridge) else { continue };
-            let residual = self.centers[..self.sites]
-                .iter()
-                .map(|c| {
-                    let p = Vec3::new(c[0] as f32, c[1] as f32, c[2] as f32) * self.radius
-                        + self.center;
-                    (f.evaluate(p).0 as f64).powi(2)
-                })
-                .sum::<f64>();
-            let reached = (residual / self.sites as f64).sqrt() >= noise;
-            best = Some(f);
-            // One ridge of the list is three to ten times the next: a finer choice does not show in the error.
-            if reached || noise < 1e-6 {
-                break;
-            }
-        }
-        best
+    /// The diagonal of eq. 11 for this noise: the variance of a value against that of the function, in local units
+    /// (kriging with the kernel as generalised covariance: Matheron, 1973).
+    fn ridge_for(&self, noise: f64) -> f64 {
+        noise * noise / (ROUGHNESS * (self.radius as f64).powi(3))
     }
 
     /// The mean plane of the support, for sub-domains that eq. 11 cannot serve.
