@@ -17,7 +17,7 @@ export function parseOni(bytes) {
 /** Points of a binary PCD with float x y z, as Zaghetto.pcd is. */
 export function parsePcd(bytes) {
   const start = bytes.indexOf('DATA binary\n') + 'DATA binary\n'.length;
-  const rows = Math.floor((bytes.length - start) / 12);
+  const rows = Number(/POINTS (\d+)/.exec(bytes.toString('latin1', 0, start))[1]); // padding follows them
   return Array.from({ length: rows }, (_, i) => [0, 4, 8].map((offset) => bytes.readFloatLE(start + 12 * i + offset)));
 }
 

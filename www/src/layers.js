@@ -14,11 +14,11 @@ import { meshMaterial, pointMaterial } from './materials.js';
  * @property {Uint32Array} [indices]
  */
 
-/** Area of a scanned surface over the squared diagonal of its box: about that of a sphere. */
-const TYPICAL_AREA = 0.9;
 /** Points wider than their spacing close the surface; narrower ones can be told apart. */
-const SCAN_COVER = 1.6;
+const SCAN_COVER = 1.8;
 const REDUCED_COVER = 0.85;
+/** However sparse the scan, its points stay points: a share of the diagonal. */
+const LARGEST = 0.012;
 
 /**
  * One draw call for each layer.
@@ -27,9 +27,9 @@ const REDUCED_COVER = 0.85;
  */
 export function cloudLayer(source, frame) {
   const shaded = Boolean(source.normals);
-  const spacing = Math.sqrt(TYPICAL_AREA / Math.max(1, source.positions.length / 3));
-  const diameter = spacing * (shaded ? REDUCED_COVER : SCAN_COVER);
   const geometry = geometryOf(source, frame);
+  const spacing = typicalSpacing(/** @type {Float32Array} */ (geometry.getAttribute('position').array));
+  const diameter = Math.min(LARGEST, spacing * (shaded ? REDUCED_COVER : SCAN_COVER));
   if (source.colors) geometry.setAttribute('color', new BufferAttribute(source.colors, 3, true));
   const layer = new Points(geometry, pointMaterial({ colored: Boolean(source.colors), shaded, diameter }));
   layer.frustumCulled = false;
@@ -62,6 +62,24 @@ function geometryOf(/** @type {Drawable} */ source, /** @type {Frame} */ frame) 
   geometry.setAttribute('position', new BufferAttribute(toFrame(source, frame), 3));
   if (source.normals) geometry.setAttribute('normal', new BufferAttribute(source.normals, 3));
   return geometry;
+}
+
+/**
+ * Mean distance between neighbours, from the area that the points cover: the share of a coarse grid's cells that
+ * hold a point, each standing for the piece of surface that crosses it.
+ */
+function typicalSpacing(/** @type {Float32Array} */ positions) {
+  const cells = 64;
+  const areaOfCell = 0.7 / cells ** 2;
+  const taken = new Uint8Array(cells ** 3);
+  const index = (/** @type {number} */ value) => Math.min(cells - 1, Math.max(0, Math.floor((value + 0.5) * cells)));
+  let count = 0;
+  for (let i = 0; i < positions.length; i += 3) {
+    const cell = index(positions[i]) + cells * (index(positions[i + 1]) + cells * index(positions[i + 2]));
+    count += 1 - taken[cell];
+    taken[cell] = 1;
+  }
+  return Math.sqrt((areaOfCell * count) / Math.max(1, positions.length / 3));
 }
 
 /** three.js lights in linear colour: sRGB bytes to linear 16-bit values, by a table. */

@@ -5,14 +5,20 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 const FIRST_LOOK = new Vector3(0.55, 0.38, 1).normalize();
 const FIT_MARGIN = 1.1;
 const FIT_MS = 420;
-/** The ways to stand a scan upright, in the order in which the button goes through them. */
+const quarter = (/** @type {number} */ x, /** @type {number} */ z, turns = 1) =>
+  new Quaternion().setFromAxisAngle(new Vector3(x, 0, z), (turns * Math.PI) / 2);
+
+/**
+ * The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land
+ * and rooms, depth cameras (whose y points down), and the rest.
+ */
 const UPS = [
-  { name: 'Y', axis: new Vector3(0, 1, 0) },
-  { name: 'Z', axis: new Vector3(0, 0, 1) },
-  { name: '−Y', axis: new Vector3(0, -1, 0) },
-  { name: '−Z', axis: new Vector3(0, 0, -1) },
-  { name: 'X', axis: new Vector3(1, 0, 0) },
-  { name: '−X', axis: new Vector3(-1, 0, 0) },
+  { name: 'Y', rotation: new Quaternion() },
+  { name: 'Z', rotation: quarter(-1, 0) },
+  { name: '−Y', rotation: quarter(1, 0, 2) },
+  { name: '−Z', rotation: quarter(1, 0) },
+  { name: 'X', rotation: quarter(0, 1) },
+  { name: '−X', rotation: quarter(0, -1) },
 ];
 
 /** A camera move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, start: number }} Flight */
@@ -128,7 +134,7 @@ export class Orbit {
 
   #stand(/** @type {number} */ up) {
     this.#up = up;
-    this.#root.quaternion.setFromUnitVectors(UPS[up].axis, new Vector3(0, 1, 0));
+    this.#root.quaternion.copy(UPS[up].rotation);
     this.#root.updateMatrixWorld();
   }
 
