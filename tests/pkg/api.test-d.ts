@@ -1,0 +1,46 @@
+// Never run: `tsc` checks that the package's types say what its documentation does, and that the modules agree.
+
+import {
+  DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
+  type CloudInfo, type Engine, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
+} from 'pointweave';
+import type * as browser from '../../pkg/index.js';
+import type * as node from '../../pkg/index.node.js';
+
+type Declared = typeof import('pointweave');
+type Same<A, B> = [keyof A, keyof B] extends [keyof B, keyof A] ? true : never;
+
+/** Both entries export exactly what is declared, with the declared types. */
+export const exported: [Same<typeof browser, Declared>, Same<typeof node, Declared>] = [true, true];
+type Functions = Omit<Declared, 'PointweaveError'>;
+export function conform(web: typeof browser, server: typeof node): [Functions, Functions] {
+  return [web, server];
+}
+
+export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
+  const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });
+  const exact: ReducedCloud<Float64Array> = await reduce({ positions: precise }, { target: { count: 10 }, method: 'paper' });
+  const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
+  const info: CloudInfo = await inspect(exact);
+  const cloud: PointCloud = await read(file, { name: 'a.ply' });
+  const bytes: Uint8Array = await write(mesh, { format: 'ply', encoding: 'ascii' });
+  const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/') });
+  const duck: PointCloud<Float32Array> = await engine.sample('duck', { count: 1000, seed: 1 });
+  await engine.reconstruct(duck, { onProgress: ({ stage, overall }) => console.log(stage satisfies Stage, overall.toFixed()) });
+  const share: number | undefined = DEFAULTS.reconstruct.accuracy;
+
+  // @ts-expect-error one target only: a string is none
+  await reduce(cloud, { target: '0.3' });
+  // @ts-expect-error no such option
+  await reduce(cloud, { ratio: 0.3 });
+  // @ts-expect-error a plain array holds no positions
+  await reduce({ positions: [1, 2, 3] });
+  // @ts-expect-error the defaults cannot be changed
+  DEFAULTS.reduce.seed = 1;
+  try {
+    await sample('pig');
+  } catch (error) {
+    if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
+  }
+  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share];
+}

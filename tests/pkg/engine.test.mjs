@@ -1,0 +1,227 @@
+// The life of an engine: which build, the queue, progress, aborts, workers.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { availableParallelism } from 'node:os';
+import test from 'node:test';
+import { promisify } from 'node:util';
+import { makeApi } from '../../pkg/api.js';
+import { platform } from '../../pkg/platform.node.js';
+import { engineFor, rejection, sphere } from './support.mjs';
+
+const STAGES = ['octree', 'features', 'cluster', 'place', 'cells', 'fit', 'orient', 'extract', 'report'];
+
+/** Takes seconds. */
+const large = sphere(300_000);
+
+/** Node's platform, which counts what is made. */
+function counting(changes = {}) {
+  const made = { compiled: 0, workers: 0 };
+  const counted = {
+    ...platform,
+    compile: (...args) => (made.compiled++, platform.compile(...args)),
+    startWorker: () => (made.workers++, platform.startWorker()),
+    ...changes,
+  };
+  return { made, api: makeApi(counted) };
+}
+
+test('the build that was asked for, and why', async (t) => {
+  const one = await engineFor(t, { threads: 1 });
+  assert.deepEqual([one.build, one.threads, one.reason], ['single', 1, 'one thread was asked for']);
+  const two = await engineFor(t, { threads: 2 });
+  assert.deepEqual([two.build, two.threads, two.reason], ['threads', 2, 'Node has threads']);
+  const auto = await engineFor(t);
+  assert.equal(auto.threads, Math.min(availableParallelism(), 16));
+  const bound = await engineFor(t, { threads: 2, worker: false });
+  assert.deepEqual([bound.build, bound.reason], ['single', 'threads need a worker']);
+  const { api } = counting({ cores: () => 1 });
+  const small = await api.createEngine();
+  assert.deepEqual([small.build, small.reason], ['single', 'there is one processor core']);
+  for (const engine of [one, two]) {
+    const { report } = await engine.reconstruct(sphere());
+    assert.deepEqual([report.build, report.threads], [engine.build, engine.threads]);
+    assert.ok(report.reason.startsWith(engine.reason), report.reason);
+    assert.ok(report.peakMemoryBytes > 1e6 && report.peakMemoryBytes % 65_536 === 0);
+  }
+});
+
+test('threads that do not start leave the single-threaded build', async (t) => {
+  const engine = await engineFor(t, { threads: 2, wasmUrl: { threads: 'file:///nowhere.wasm' } });
+  assert.deepEqual([engine.build, engine.threads], ['single', 1]);
+  assert.match(engine.reason, /threads build did not start: .*nowhere\.wasm/);
+  assert.match((await engine.reduce(sphere())).report.reason, /did not start/);
+
+  const { api } = counting({
+    startWorker() {
+      const worker = platform.startWorker();
+      return { ...worker, post: (message, transfer) => worker.post(message.request?.call === 'buildPool' ? { request: { call: 'buildPool', args: [-1] } } : message, transfer) };
+    },
+  });
+  const broken = await api.createEngine({ threads: 2 });
+  t.after(() => broken.dispose());
+  assert.equal(broken.build, 'single', 'a pool of 2^32-1 threads cannot be');
+});
+
+test('concurrent first calls start one host', async () => {
+  const { made, api } = counting();
+  const engine = await api.createEngine({ threads: 1, worker: true });
+  await engine.dispose();
+  assert.deepEqual(made, { compiled: 1, workers: 1 });
+  await Promise.all([api.inspect(sphere(500)), api.inspect(sphere(500)), api.reduce(sphere(500))]);
+  assert.equal(made.compiled, 2);
+});
+
+test('calls run one after the other, in order', async (t) => {
+  for (const worker of [false, true]) {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const log = [];
+    const call = (name, count) => engine.reduce(sphere(count), { onProgress: () => log.push(name) }).then(() => log.push(`${name} done`));
+    await Promise.all([call('a', 20_000), call('b', 500), call('c', 2000)]);
+    const order = log.filter((entry, i) => entry !== log[i - 1]);
+    assert.deepEqual(order.filter((entry) => !entry.endsWith('done')), ['a', 'b', 'c']);
+    assert.deepEqual(order.filter((entry) => entry.endsWith('done')), ['a done', 'b done', 'c done']);
+  }
+});
+
+test('a call that fails does not hold up the next', async (t) => {
+  const engine = await engineFor(t, { threads: 1 });
+  const bad = rejection(engine.reduce({ positions: new Float32Array(0) }));
+  const good = engine.reduce(sphere(500));
+  assert.equal((await bad).code, 'empty-cloud');
+  assert.equal((await good).positions.length / 3, 167);
+});
+
+test('progress goes through the stages, never back, and ends at 1', async (t) => {
+  for (const worker of [false, true]) {
+    const engine = await engineFor(t, { threads: 1, worker });
+    for (const [call, stages] of [['reduce', ['octree', 'features', 'cluster', 'place', 'report']], ['reconstruct', STAGES], ['inspect', ['octree', 'features']]]) {
+      const seen = [];
+      await engine[call](sphere(10_000), { onProgress: (progress) => seen.push(progress) });
+      assert.ok(seen.length > 3, `${call} said ${seen.length} things`);
+      let before = 0;
+      for (const { stage, fraction, overall } of seen) {
+        assert.ok(STAGES.includes(stage), stage);
+        assert.ok(fraction >= 0 && fraction <= 1 && overall >= before && overall <= 1, `${call}: ${stage} ${fraction} ${overall}`);
+        before = overall;
+      }
+      assert.equal(seen.at(-1).overall, 1);
+      assert.equal(seen.filter(({ overall }) => overall === 1).length, 1, 'one end');
+      const order = [...new Set(seen.map(({ stage }) => stage))];
+      assert.deepEqual(order, stages, call);
+    }
+  }
+});
+
+test('an abort ends a worker within 100 ms; the next call has a fresh one of the same module', async (t) => {
+  for (const threads of [1, 2]) {
+    const { made, api } = counting();
+    const engine = await api.createEngine({ threads, worker: true });
+    t.after(() => engine.dispose());
+    const controller = new AbortController();
+    const reason = new Error('enough');
+    let asked = 0;
+    const error = await rejection(engine.reconstruct(large, {
+      signal: controller.signal,
+      onProgress({ stage }) {
+        if (asked || stage !== 'cluster') return;
+        asked = performance.now();
+        setTimeout(() => {
+          asked = performance.now();
+          controller.abort(reason);
+        }, 20);
+      },
+    }));
+    assert.ok(performance.now() - asked < 100, `took ${performance.now() - asked} ms`);
+    assert.equal(error, reason);
+    assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+    const perHost = threads === 1 ? 1 : 1 + threads;
+    assert.equal(made.workers, 2 * perHost);
+  }
+});
+
+test('in process, an abort from onProgress stops the work', async (t) => {
+  const engine = await engineFor(t, { threads: 1 });
+  for (const reason of [new Error('enough'), 'a string', undefined]) {
+    const controller = new AbortController();
+    let after = 0;
+    const error = await rejection(engine.reduce(large, {
+      signal: controller.signal,
+      onProgress({ stage }) {
+        if (controller.signal.aborted) after++;
+        if (stage === 'features') controller.abort(reason);
+      },
+    }));
+    assert.equal(error, controller.signal.reason);
+    assert.equal(after, 0, 'it went on');
+  }
+  assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+});
+
+test('an abort before or while waiting rejects at once', async (t) => {
+  for (const worker of [false, true]) {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const error = await rejection(engine.reduce(sphere(), { signal: AbortSignal.abort('early') }));
+    assert.equal(error, 'early');
+    const running = engine.reduce(sphere(20_000));
+    const controller = new AbortController();
+    const waiting = rejection(engine.reduce(large, { signal: controller.signal }));
+    controller.abort('changed my mind');
+    assert.equal(await waiting, 'changed my mind');
+    assert.equal((await running).positions.length / 3, 6667);
+  }
+});
+
+test('what onProgress throws is what the call rejects with', async (t) => {
+  for (const worker of [false, true]) {
+    const engine = await engineFor(t, { threads: 1, worker });
+    const mine = new RangeError('mine');
+    const error = await rejection(engine.reduce(sphere(20_000), { onProgress() { throw mine; } }));
+    assert.equal(error, mine);
+    assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+  }
+});
+
+test('dispose ends the call under way and the workers', async () => {
+  const ended = new Set();
+  const { api } = counting({
+    startWorker() {
+      const worker = platform.startWorker();
+      return { ...worker, terminate: () => (ended.add(worker), worker.terminate()) };
+    },
+  });
+  const engine = await api.createEngine({ threads: 2 });
+  const running = rejection(engine.reconstruct(large));
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  await engine.dispose();
+  assert.equal((await running).code, 'disposed');
+  assert.equal(ended.size, 3, 'one that computes and two that lend their threads');
+});
+
+test('a process ends by itself, and does not end before its results are there', async () => {
+  const script = `
+    import { createEngine } from 'pointweave';
+    for (const options of [{ threads: 1 }, { threads: 1, worker: true }, { threads: 2 }]) {
+      const engine = await createEngine(options);
+      engine.reduce({ positions: Float32Array.from({ length: 3000 }, (_, i) => Math.sin(i * i)) })
+        .then(({ positions }) => console.log(engine.build, positions.length));
+    }`;
+  const { stdout } = await promisify(execFile)(process.execPath, ['--input-type=module', '--eval', script], {
+    cwd: new URL('..', import.meta.url), timeout: 60_000,
+  });
+  assert.deepEqual(stdout.trim().split('\n').sort(), ['single 999', 'single 999', 'threads 999']);
+});
+
+test('the browser entry can be imported on a server', async () => {
+  const web = await import('../../pkg/index.js');
+  const node = await import('pointweave');
+  assert.deepEqual(Object.keys(web).sort(), Object.keys(node).sort());
+});
+
+test('the shared engine is made on the first call', async () => {
+  const { made, api } = counting();
+  assert.equal(made.compiled, 0);
+  await api.reduce(sphere(500));
+  await api.reduce(sphere(500));
+  assert.equal(made.compiled, 1);
+});
