@@ -10,6 +10,7 @@
 //! 2018) tells inside from outside and closes holes.
 
 use crate::cells::Sites;
+use crate::extract::Implicit;
 use crate::fit::{Fits, LocalFit};
 use crate::kernel::wendland;
 use crate::octree::Octree;
@@ -189,6 +190,27 @@ impl<'a> Field<'a> {
     /// A continuation of F to all of space from the winding number: its zero set closes the holes of F's.
     pub fn extension(&self, x: DVec3) -> f64 {
         self.depth * (0.5 - self.winding(x))
+    }
+}
+
+impl Implicit for Field<'_> {
+    type Scratch = Scratch;
+
+    fn scratch(&self) -> Scratch {
+        Scratch::default()
+    }
+
+    fn local(&self, at: DVec3, scratch: &mut Scratch) -> Option<f64> {
+        self.value(at.as_vec3(), scratch).map(f64::from)
+    }
+
+    fn global(&self, at: DVec3, _: &mut Scratch) -> f64 {
+        self.extension(at)
+    }
+
+    fn gradient(&self, at: DVec3, scratch: &mut Scratch) -> Option<(f64, DVec3)> {
+        let (value, gradient) = self.value_and_gradient(at.as_vec3(), scratch)?;
+        Some((value as f64, gradient.as_dvec3()))
     }
 }
 

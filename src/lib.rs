@@ -59,7 +59,12 @@ mod band;
 mod lattice;
 mod loops;
 mod dual;
+pub mod attach;
 pub mod report;
+pub mod distance;
+
+// The top: the stages in order.
+pub mod pipeline;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.
 pub mod formats;
@@ -71,4 +76,5 @@ pub mod wasm;
 pub use cloud::Cloud;
 pub use error::{Error, Result};
 pub use params::{ReduceParams, SurfaceParams};
+pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect, reconstruct, reduce};
 pub use progress::{Progress, Stage};

@@ -1,0 +1,265 @@
+//! Distances from points to a mesh, and to a surface of which only points with normals are known.
+
+use crate::error::Result;
+use crate::kernel::wendland;
+use crate::octree::{Neighbor, Octree};
+use crate::par;
+use crate::progress::{Progress, Stage};
+use crate::report::DistanceStats;
+use glam::{DVec3, Vec3};
+
+/// Points that one index of a parallel map takes.
+const POINTS_PER_TASK: usize = 256;
+
+/// Triangles in a tree for closest-point queries.
+pub struct TriangleTree<'a> {
+    vertices: &'a [Vec3],
+    triangles: &'a [[u32; 3]],
+    /// Over the triangles' centroids.
+    centroids: Octree,
+    /// Boxes of the triangles below each node.
+    boxes: Vec<(Vec3, Vec3)>,
+}
+
+impl<'a> TriangleTree<'a> {
+    /// At least one triangle. Cost: n log n, 80 bytes a triangle.
+    pub fn new(vertices: &'a [Vec3], triangles: &'a [[u32; 3]]) -> TriangleTree<'a> {
+        let corners = |t: u32| triangles[t as usize].map(|v| vertices[v as usize]);
+        let centroid = |t: u32| corners(t).into_iter().sum::<Vec3>() / 3.0;
+        let centroids: Vec<Vec3> = (0..triangles.len() as u32).map(centroid).collect();
+        let centroids = Octree::build(&centroids);
+        let mut boxes = vec![(Vec3::INFINITY, Vec3::NEG_INFINITY); centroids.nodes.len()];
+        // Children come after their parents.
+        for (id, node) in centroids.nodes.iter().enumerate().rev() {
+            let (mut low, mut high) = boxes[id];
+            if node.is_leaf() {
+                for corner in centroids.order[node.range()]
+                    .iter()
+                    .flat_map(|&t| corners(t))
+                {
+                    (low, high) = (low.min(corner), high.max(corner));
+                }
+            }
+            for (child_low, child_high) in node.child_ids().map(|child| boxes[child]) {
+                (low, high) = (low.min(child_low), high.max(child_high));
+            }
+            boxes[id] = (low, high);
+        }
+        TriangleTree {
+            vertices,
+            triangles,
+            centroids,
+            boxes,
+        }
+    }
+
+    /// The squared distance (unit frame) of `point` to the nearest triangle, and that triangle. `hint` is a triangle
+    /// that may be near, such as the last answer; it saves time and changes nothing but which of equally near ones is
+    /// found.
+    pub fn closest(&self, point: Vec3, hint: u32) -> (f64, u32) {
+        let mut best = (self.distance2(point, hint), hint);
+        self.closest_below(0, point, &mut best);
+        best
+    }
+
+    fn closest_below(&self, id: usize, point: Vec3, best: &mut (f64, u32)) {
+        let node = &self.centroids.nodes[id];
+        if node.is_leaf() {
+            for &triangle in &self.centroids.order[node.range()] {
+                let distance2 = self.distance2(point, triangle);
+                if distance2 < best.0 {
+                    *best = (distance2, triangle);
+                }
+            }
+            return;
+        }
+        let mut near = [(0.0f32, 0); 8];
+        let mut count = 0;
+        for child in node.child_ids() {
+            let (low, high) = self.boxes[child];
+            let distance2 = (low - point)
+                .max(point - high)
+                .max(Vec3::ZERO)
+                .length_squared();
+            if (distance2 as f64) < best.0 {
+                near[count] = (distance2, child);
+                count += 1;
+            }
+        }
+        near[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for &(distance2, child) in &near[..count] {
+            if distance2 as f64 >= best.0 {
+                break;
+            }
+            self.closest_below(child, point, best);
+        }
+    }
+
+    fn distance2(&self, point: Vec3, triangle: u32) -> f64 {
+        let [a, b, c] =
+            self.triangles[triangle as usize].map(|v| self.vertices[v as usize].as_dvec3());
+        let point = point.as_dvec3();
+        point.distance_squared(closest_on_triangle(point, [a, b, c]))
+    }
+}
+
+/// The point of a triangle nearest to `p`, by the region of its plane that `p` lies over (C. Ericson, *Real-Time
+/// Collision Detection*, 2005, section 5.1.5).
+pub fn closest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    a + (ab * vb + ac * vc) / (va + vb + vc)
+}
+
+/// Distances of `points` to a mesh (all in the unit frame); zeros where there is no triangle. Fastest where points that
+/// follow each other are near each other, as in an octree's order.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`] if `progress` asks for it.
+pub fn mesh_distance(
+    points: &[Vec3],
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    progress: &mut dyn Progress,
+) -> Result<DistanceStats> {
+    if triangles.is_empty() {
+        return Ok(DistanceStats::default());
+    }
+    let tree = TriangleTree::new(vertices, triangles);
+    by_task(
+        points,
+        1.0,
+        progress,
+        || 0,
+        |point, hint| {
+            let (distance2, triangle) = tree.closest(point, *hint);
+            *hint = triangle;
+            distance2.sqrt()
+        },
+    )
+}
+
+/// Reduced points around a query that make up its local surface.
+const NEIGHBORS: usize = 8;
+/// Neighbours whose normals differ by more (cosine of 60°) belong to another face.
+const FACE_COSINE: f32 = 0.5;
+/// Neighbours that stand out of the nearest one's tangent plane by more (sine of 30°) belong to another sheet.
+const SHEET_SINE: f32 = 0.5;
+
+/// Distances of `points` to the surface that reduced points stand for (all in the unit frame).
+///
+/// With p_i the up to 8 nearest reduced points on the nearest one's face and sheet, n_i their normals turned to agree
+/// with the nearest one's, w_i Wendland weights that vanish at 1.1 times the distance of the eighth, and n(x) the
+/// normalised Σ w_i n_i, the distance is
+///
+/// d(x) = |Σ w_i ½(n_i + n(x))·(x − p_i)| / Σ w_i,
+///
+/// at most the distance to the nearest reduced point. Both normals together make each term vanish on a sphere through
+/// p_i and x, where the tangent plane alone would be off by κr²/2 (S. Rusinkiewicz, "A symmetric objective function for
+/// ICP", 2019).
+///
+/// `reduced` is the tree of the reduced points, `normals` theirs, unit, in the order from which the tree was built.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`] if `progress` asks for it.
+pub fn cloud_distance(
+    points: &[Vec3],
+    reduced: &Octree,
+    normals: &[Vec3],
+    progress: &mut dyn Progress,
+) -> Result<DistanceStats> {
+    by_task(
+        points,
+        2.0,
+        progress,
+        Vec::new,
+        |point, found: &mut Vec<Neighbor>| {
+            reduced.knn(point, NEIGHBORS, found);
+            surface_distance(point, found, reduced, normals)
+        },
+    )
+}
+
+/// d(x) of [`cloud_distance`] from the nearest points, nearest first.
+fn surface_distance(x: Vec3, found: &[Neighbor], reduced: &Octree, normals: &[Vec3]) -> f64 {
+    let at = |n: &Neighbor| reduced.points[n.index as usize];
+    let normal = |n: &Neighbor| normals[reduced.order[n.index as usize] as usize];
+    let (Some(first), Some(last)) = (found.first(), found.last()) else {
+        return 0.0;
+    };
+    let (p, n) = (at(first), normal(first));
+    let radius = 1.1 * (last.distance2 as f64).sqrt();
+    if radius == 0.0 {
+        return 0.0;
+    }
+    // Offsets to neighbours, their turned normals and weights.
+    let mut terms = [(DVec3::ZERO, DVec3::ZERO, 0.0); NEIGHBORS];
+    let mut mean = DVec3::ZERO;
+    for (term, neighbor) in terms.iter_mut().zip(found) {
+        let (q, m) = (at(neighbor), normal(neighbor));
+        let agreement = m.dot(n);
+        let is_same =
+            agreement.abs() >= FACE_COSINE && n.dot(q - p).abs() <= SHEET_SINE * q.distance(p);
+        if is_same || neighbor.index == first.index {
+            let weight = wendland((neighbor.distance2 as f64).sqrt() / radius).0;
+            let turned = m.as_dvec3() * f64::from(agreement.signum());
+            *term = ((x - q).as_dvec3(), turned, weight);
+            mean += turned * weight;
+        }
+    }
+    let mean = mean.normalize_or(n.as_dvec3());
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (offset, turned, weight) in terms {
+        sum += weight * 0.5 * (turned + mean).dot(offset);
+        total += weight;
+    }
+    (sum / total).abs().min((first.distance2 as f64).sqrt())
+}
+
+/// Statistics of `distance` over the points, in parallel; `weight` is about how many microseconds a point takes.
+fn by_task<S>(
+    points: &[Vec3],
+    weight: f32,
+    progress: &mut dyn Progress,
+    scratch: impl Fn() -> S + Sync + Send,
+    distance: impl Fn(Vec3, &mut S) -> f64 + Sync + Send,
+) -> Result<DistanceStats> {
+    let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
+    let weight = weight * POINTS_PER_TASK as f32;
+    let distances = par::map_progress(
+        tasks.len(),
+        weight,
+        (Stage::Report, progress),
+        scratch,
+        |k, scratch| {
+            tasks[k]
+                .iter()
+                .map(|&point| distance(point, scratch))
+                .collect::<Vec<f64>>()
+        },
+    )?;
+    Ok(DistanceStats::of(distances.into_iter().flatten()))
+}

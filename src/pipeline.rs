@@ -1,0 +1,389 @@
+//! The stages in order: what the crate, the package and the page call.
+
+use crate::attach::attach;
+use crate::cells::{Cells, Sites};
+use crate::cloud::{Attribute, Cloud};
+use crate::distance::{cloud_distance, mesh_distance};
+use crate::error::{Error, Result};
+use crate::extract::{ExtractParams, Mesh, extract};
+use crate::features::Features;
+use crate::field::Field;
+use crate::fit;
+use crate::octree::Octree;
+use crate::orient;
+use crate::par;
+use crate::params::{ReduceParams, Resolution, SurfaceParams, Target};
+use crate::progress::{Progress, Silent, Stage};
+use crate::reduce::{self, Reduced};
+use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
+use glam::Vec3;
+use serde::Serialize;
+use web_time::Instant;
+
+/// A reduced cloud and what its reduction did.
+#[derive(Debug, Clone)]
+pub struct ReducedCloud {
+    /// The points with all that belongs to them.
+    pub reduced: Reduced,
+    /// Counts, distances, times.
+    pub report: ReduceReport,
+}
+
+/// A mesh with the cloud that it was fitted to.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    /// In the unit frame of `cloud.reduced.cloud`; see [`Surface::positions_f64`].
+    pub mesh: Mesh,
+    /// One colour a vertex, where the cloud had colours.
+    pub colors: Option<Vec<[u8; 3]>>,
+    /// One value a vertex for each scalar of the cloud.
+    pub attributes: Vec<Attribute>,
+    /// The points that the surface was fitted to, with oriented normals.
+    pub cloud: ReducedCloud,
+    /// Counts, distances, topology, times.
+    pub report: SurfaceReport,
+}
+
+impl Surface {
+    /// Vertices, `x y z …` in the caller's frame.
+    pub fn positions_f64(&self) -> Vec<f64> {
+        let frame = &self.cloud.reduced.cloud.frame;
+        self.mesh
+            .vertices
+            .iter()
+            .flat_map(|&v| frame.to_caller(v))
+            .collect()
+    }
+}
+
+/// What can be said of a cloud before anything is done to it. Lengths are in the caller's unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct CloudInfo {
+    /// Points, those that are not finite too.
+    pub count: usize,
+    /// Points with a coordinate that is NaN or infinite; all else is about the other points.
+    pub non_finite: usize,
+    /// Points that repeat an earlier one exactly.
+    pub duplicates: usize,
+    /// Corners of the bounding box.
+    pub bounds: Bounds,
+    /// Diagonal of the bounding box.
+    pub diagonal: f64,
+    /// Median distance of neighbours on the surface.
+    pub spacing: f64,
+    /// Estimated standard deviation of the noise across the surface.
+    pub noise: f64,
+}
+
+/// Corners of a bounding box in the caller's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Bounds {
+    /// Lower corner.
+    pub min: [f64; 3],
+    /// Upper corner.
+    pub max: [f64; 3],
+}
+
+/// A surface needs this many points.
+const MIN_POINTS: usize = 4;
+/// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
+const MIN_REDUCED: usize = 64;
+
+/// Edge length of the extraction grid in median spacings.
+const EDGE: f64 = 0.5;
+
+/// Reduces a cloud (section 3).
+///
+/// Normals of the result have the signs of the cloud's own normals, where it had them, else arbitrary ones.
+///
+/// # Errors
+/// [`Error::BadOption`], [`Error::Cancelled`].
+pub fn reduce(
+    cloud: &Cloud,
+    params: &ReduceParams,
+    progress: &mut dyn Progress,
+) -> Result<ReducedCloud> {
+    params.validate()?;
+    let mut clock = Clock::new(progress);
+    let (tree, features) = measure(cloud, &mut clock)?;
+    let reduced = reduce::reduce(cloud, &tree, &features, params, &mut clock)?;
+    let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
+    let sites = Octree::build(&reduced.cloud.points);
+    let distance = cloud_distance(&tree.points, &sites, normals, &mut clock)?;
+    let report = reduce_report(cloud, &features, &reduced, distance, &clock);
+    Ok(ReducedCloud { reduced, report })
+}
+
+/// Takes a cloud to a mesh: reduction, fit, orientation, blending, extraction.
+///
+/// # Errors
+/// [`Error::TooFewPoints`] (under 4), [`Error::Degenerate`] (all points on a line or at one place),
+/// [`Error::BadOption`] (`orient: false` without normals too), [`Error::Cancelled`].
+pub fn reconstruct(
+    cloud: &Cloud,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
+    params.validate()?;
+    check_surface(cloud, params)?;
+    let mut clock = Clock::new(progress);
+    let (tree, features) = measure(cloud, &mut clock)?;
+    if features.normals.iter().all(|&n| n == Vec3::ZERO) {
+        let found = "all points lie on one line or at one place".into();
+        return Err(Error::Degenerate { found });
+    }
+    let (mut reduced, reason) = points_to_fit(cloud, &tree, &features, params, &mut clock)?;
+    let sites = sites(&reduced, features.noise, params.orient, &mut clock)?;
+    let cells = Cells::divide(&sites, &mut clock)?;
+    let graph = cells.graph.clone();
+    let fits = fit::fit(cells, &sites, &tree, features.noise, params, &mut clock)?;
+    if fits.functions.is_empty() {
+        let found = "no neighbourhood of the points spans a surface".into();
+        return Err(Error::Degenerate { found });
+    }
+    let signs = orient::orient(&fits, &sites, &graph, params.propagation, &mut clock)?;
+    let field = Field::new(&fits, &signs, &sites);
+    let how = extract_params(&sites, params);
+    let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+
+    reduced.cloud.normals = Some(in_input_order(&sites.tree, &signs.normals));
+    let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
+    let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let topology = report::topology(&mesh.triangles, mesh.vertices.len());
+    let mut report = reduce_report(cloud, &features, &reduced, distance, &clock);
+    report.reason = reason;
+    let residuals = || fits.residuals.iter().map(|&r| r as f64);
+    let beyond = residuals().filter(|&r| r > params.accuracy).count();
+    let surface_report = SurfaceReport {
+        reduce: report.clone(),
+        triangles: mesh.triangles.len(),
+        components: topology.components,
+        boundary_edges: topology.boundary_edges,
+        non_manifold_edges: topology.non_manifold_edges,
+        genus: topology.genus,
+        refinements: fits.refinements,
+        residual: DistanceStats::of(residuals()),
+        beyond_accuracy: beyond as f64 / cloud.len() as f64,
+        orientation_energy: signs.energy,
+    };
+    let cloud = ReducedCloud { reduced, report };
+    Ok(Surface {
+        mesh,
+        colors,
+        attributes,
+        cloud,
+        report: surface_report,
+    })
+}
+
+/// Looks at positions `x y z …` without changing or refusing any.
+///
+/// # Errors
+/// [`Error::EmptyCloud`] (no finite point), [`Error::BadLength`].
+pub fn inspect(positions: &[f64]) -> Result<CloudInfo> {
+    let finite: Vec<f64> = positions
+        .chunks_exact(3)
+        .filter(|p| p.iter().all(|x| x.is_finite()))
+        .flatten()
+        .copied()
+        .collect();
+    let whole = positions.len() / 3 * 3 == positions.len();
+    let cloud = Cloud::from_f64(if whole { &finite } else { positions })?;
+    let (tree, features) = measure(&cloud, &mut Silent)?;
+    let mut sorted: Vec<[u64; 3]> = finite
+        .chunks_exact(3)
+        .map(|p| [0, 1, 2].map(|a| (p[a] + 0.0).to_bits()))
+        .collect();
+    sorted.sort_unstable();
+    let corner = |pick: fn(f64, f64) -> f64, start: f64| {
+        [0, 1, 2].map(|a| finite[a..].iter().step_by(3).copied().fold(start, pick))
+    };
+    let diagonal = cloud.frame.diagonal;
+    let extent = tree.nodes[0].lo != tree.nodes[0].hi;
+    Ok(CloudInfo {
+        count: positions.len() / 3,
+        non_finite: (positions.len() - finite.len()) / 3,
+        duplicates: sorted.windows(2).filter(|w| w[0] == w[1]).count(),
+        bounds: Bounds {
+            min: corner(f64::min, f64::INFINITY),
+            max: corner(f64::max, f64::NEG_INFINITY),
+        },
+        diagonal: if extent { diagonal } else { 0.0 },
+        spacing: features.median_spacing() as f64 * diagonal,
+        noise: features.noise as f64 * diagonal,
+    })
+}
+
+/// The octree and the features of a cloud.
+fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
+    progress.update(Stage::Octree, 0.0)?;
+    let tree = Octree::build(&cloud.points);
+    progress.update(Stage::Octree, 1.0)?;
+    let features = Features::measure(&tree, progress)?;
+    Ok((tree, features))
+}
+
+fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
+    if cloud.len() < MIN_POINTS {
+        return Err(Error::TooFewPoints {
+            needed: MIN_POINTS,
+            found: cloud.len(),
+        });
+    }
+    if !params.orient && cloud.normals.is_none() {
+        return Err(Error::BadOption {
+            option: "orient".into(),
+            expected: "true, or a cloud with normals".into(),
+            found: "false and no normals".into(),
+        });
+    }
+    Ok(())
+}
+
+/// The reduced cloud that surfaces are fitted to, and why it is not what was asked for, where it is not.
+fn points_to_fit(
+    cloud: &Cloud,
+    tree: &Octree,
+    features: &Features,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<(Reduced, String)> {
+    if let Some(params) = &params.reduce {
+        let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
+        if reduced.cloud.len() >= MIN_REDUCED.min(cloud.len()) {
+            return Ok((reduced, String::new()));
+        }
+    }
+    let all = ReduceParams {
+        target: Target::Ratio(1.0),
+        ..Default::default()
+    };
+    let reason = match params.reduce {
+        Some(_) => format!("fewer than {MIN_REDUCED} points would be left: all were fitted"),
+        None => String::new(),
+    };
+    Ok((
+        reduce::reduce(cloud, tree, features, &all, progress)?,
+        reason,
+    ))
+}
+
+/// The reduced points as sites of the fit.
+fn sites(
+    reduced: &Reduced,
+    input_noise: f32,
+    orient: bool,
+    progress: &mut dyn Progress,
+) -> Result<Sites> {
+    let tree = Octree::build(&reduced.cloud.points);
+    let features = Features::measure(&tree, progress)?;
+    let normals = match &reduced.cloud.normals {
+        Some(normals) => tree.order.iter().map(|&i| normals[i as usize]).collect(),
+        None => features.normals,
+    };
+    // Coarse sampling of curved parts looks like noise, so the reduced cloud is never noisier than its input.
+    let noise = features.noise.min(input_noise);
+    Ok(Sites {
+        tree,
+        normals,
+        spacing: features.spacing,
+        noise,
+        oriented: !orient,
+    })
+}
+
+/// How the surface of these sites is extracted.
+fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
+    let resolution = match params.resolution {
+        Resolution::Edge(edge) => edge,
+        Resolution::Auto => {
+            let mut spacing = sites.spacing.clone();
+            spacing.sort_unstable_by(f32::total_cmp);
+            (EDGE * spacing[spacing.len() / 2] as f64).clamp(1e-4, 0.25)
+        }
+    };
+    ExtractParams {
+        resolution,
+        boundary: params.boundary,
+        sharp: params.sharp,
+    }
+}
+
+/// Values in a tree's order back in the order of its input.
+fn in_input_order(tree: &Octree, values: &[Vec3]) -> Vec<Vec3> {
+    let mut out = vec![Vec3::ZERO; values.len()];
+    for (&i, &v) in tree.order.iter().zip(values) {
+        out[i as usize] = v;
+    }
+    out
+}
+
+fn reduce_report(
+    cloud: &Cloud,
+    features: &Features,
+    reduced: &Reduced,
+    distance: DistanceStats,
+    clock: &Clock,
+) -> ReduceReport {
+    ReduceReport {
+        input_points: cloud.len(),
+        output_points: reduced.cloud.len(),
+        cells: reduced.stats.cells,
+        iterations: reduced.stats.iterations,
+        objective: reduced.stats.objective,
+        validity: reduced.stats.validity,
+        evenness: reduced.stats.evenness,
+        noise: features.noise as f64,
+        sharp_points: reduced.stats.kept,
+        distance,
+        ms: clock.times.clone(),
+        total_ms: clock.start.elapsed().as_secs_f64() * 1e3,
+        build: if cfg!(not(target_arch = "wasm32")) {
+            "native"
+        } else if cfg!(feature = "threads") {
+            "threads"
+        } else {
+            "single"
+        }
+        .into(),
+        threads: par::threads(),
+        ..Default::default()
+    }
+}
+
+/// Passes progress on and notes how long each stage took.
+struct Clock<'a> {
+    inner: &'a mut dyn Progress,
+    start: Instant,
+    last: Instant,
+    stage: Stage,
+    times: StageTimes,
+}
+
+impl<'a> Clock<'a> {
+    fn new(inner: &'a mut dyn Progress) -> Clock<'a> {
+        let now = Instant::now();
+        Clock {
+            inner,
+            start: now,
+            last: now,
+            stage: Stage::Octree,
+            times: StageTimes::default(),
+        }
+    }
+}
+
+impl Progress for Clock<'_> {
+    fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
+        // What passed before a stage's first word belongs to the stage before.
+        if fraction > 0.0 {
+            self.stage = stage;
+        }
+        let now = Instant::now();
+        self.times
+            .add(self.stage, (now - self.last).as_secs_f64() * 1e3);
+        (self.last, self.stage) = (now, stage);
+        self.inner.update(stage, fraction)
+    }
+}
