@@ -117,8 +117,8 @@ export class App {
   #opened(/** @type {Scan} */ scan) {
     this.#mark(scan.model);
     byId('caption-title', HTMLElement).textContent = scan.title;
-    byId('caption-detail', HTMLElement).textContent =
-      [scan.model && 'simulated scan', `${format.count(scan.count)} points`, scan.frame.size.map(format.length).join(' × ')].filter(Boolean).join(' · ');
+    byId('caption-detail', HTMLElement).textContent = `${scan.model ? 'simulated scan, ' : ''}${format.count(scan.count)} points`;
+    byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
     this.#viewer?.open(scan.cloud, scan.frame);
     this.#viewChosen = false;
     this.#offer('reduced', false);
