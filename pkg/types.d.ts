@@ -193,18 +193,20 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   report: SurfaceReport;
 }
 
+/** What can be said of a cloud before anything is done to it. Lengths are in the caller's unit. */
 export interface CloudInfo {
+  /** Points, those that are not finite too. */
   count: number;
   bounds: { min: [number, number, number]; max: [number, number, number] };
-  /** Of the bounding box, in the caller's unit. */
+  /** Of the bounding box. */
   diagonal: number;
-  /** Mean distance to the nearest neighbour, a fraction. */
+  /** Median distance of neighbours on the surface. */
   spacing: number;
-  /** Points at the very place of another. */
+  /** Points that repeat an earlier one exactly. */
   duplicates: number;
   /** Points with a coordinate that is NaN or infinite; left out of everything else here. */
   nonFinite: number;
-  /** Estimated noise, a fraction. */
+  /** Estimated standard deviation of the noise across the surface. */
   noise: number;
 }
 

@@ -1,12 +1,19 @@
 //! The border to JavaScript, and the only file that knows of it: typed arrays and one options object in, plain objects
 //! of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
 //! `pkg/` turns them into its `PointweaveError`.
+//!
+//! Every `progress` is a function `(stage, fraction) => stop` whose truthy answer, or exception, stops the job.
 
+use crate::cloud::{Attribute, Cloud};
 use crate::error::Error;
+use crate::formats::{self, Format, Positions, RawCloud, WriteOptions};
 use crate::params::{ReduceParams, SurfaceParams};
+use crate::pipeline::{self, ReducedCloud, Surface};
 use crate::progress::{Progress, Stage};
+use crate::report::ReduceReport;
 use crate::samples::{self, Model};
-use js_sys::{Float32Array, Function, Object, Reflect, Uint8Array};
+use glam::Vec3;
+use js_sys::{Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
@@ -60,6 +67,94 @@ pub fn defaults() -> JsResult {
     ])
 }
 
+/// [`pipeline::reduce`].
+#[wasm_bindgen]
+pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
+    let input = cloud.read();
+    let mut result = pipeline::reduce(
+        &input.to_cloud()?,
+        &from_js(options)?,
+        &mut JsProgress(progress),
+    )?;
+    sign(&mut result.report);
+    reduced_to_js(&result, &input)
+}
+
+/// [`pipeline::reconstruct`].
+#[wasm_bindgen]
+pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
+    let input = cloud.read();
+    let mut surface = pipeline::reconstruct(
+        &input.to_cloud()?,
+        &from_js(options)?,
+        &mut JsProgress(progress),
+    )?;
+    sign(&mut surface.report.reduce);
+    sign(&mut surface.cloud.report);
+    surface_to_js(&surface, &input)
+}
+
+/// [`pipeline::inspect`].
+#[wasm_bindgen]
+pub fn inspect(cloud: &PointCloud, progress: Function) -> JsResult {
+    let positions = match cloud.read().positions {
+        Positions::F32(values) => values.into_iter().map(f64::from).collect(),
+        Positions::F64(values) => values,
+    };
+    to_js(&pipeline::inspect(&positions, &mut JsProgress(progress))?)
+}
+
+/// Options of [`read`].
+#[derive(Deserialize)]
+struct ReadOptions {
+    name: Option<String>,
+    format: Option<String>,
+}
+
+/// [`formats::read`] of `{ name, format }`, both optional: a cloud.
+#[wasm_bindgen]
+pub fn read(bytes: &[u8], options: JsValue) -> JsResult {
+    let ReadOptions { name, format } = from_js(options)?;
+    let format = match format {
+        Some(format) => format_named(&format)?,
+        None => formats::detect(bytes, name.as_deref())?,
+    };
+    let cloud = formats::read(bytes, format)?;
+    let positions = match &cloud.positions {
+        Positions::F32(values) => Float32Array::from(&values[..]).into(),
+        Positions::F64(values) => Float64Array::from(&values[..]).into(),
+    };
+    let fields = object([
+        ("positions", positions),
+        ("colors", optional(&cloud.colors, |c| Uint8Array::from(&c[..]))),
+        ("normals", optional(&cloud.normals, |n| Float32Array::from(&n[..]))),
+    ])?;
+    attach(fields, &cloud.attributes, cloud.origin)
+}
+
+/// Options of [`write`].
+#[derive(Deserialize)]
+struct WriteSettings {
+    format: Option<String>,
+    encoding: Option<String>,
+}
+
+/// [`formats::write`] of `{ format, encoding }`: the file's bytes.
+#[wasm_bindgen]
+pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValue> {
+    let WriteSettings { format, encoding } = from_js(options)?;
+    let format = format_named(format.as_deref().unwrap_or("ply"))?;
+    let ascii = encoding.as_deref() == Some("ascii");
+    let indices = result.indices().map(|indices| indices.to_vec());
+    let bytes = formats::write(
+        &result.read(),
+        indices.as_deref(),
+        format,
+        WriteOptions { ascii },
+    )?;
+    Ok(Uint8Array::from(&bytes[..]))
+}
+
 /// Options of [`sample`].
 #[derive(Deserialize)]
 struct SampleOptions {
@@ -69,7 +164,7 @@ struct SampleOptions {
     seed: u64,
 }
 
-/// A generated scan: `{ positions, colors }` of `{ model, count, seed }`.
+/// [`samples::sample`] of `{ model, count, seed }`: a cloud with colours.
 #[wasm_bindgen]
 pub fn sample(options: JsValue) -> JsResult {
     let SampleOptions { model, count, seed } = from_js(options)?;
@@ -82,15 +177,142 @@ pub fn sample(options: JsValue) -> JsResult {
     ])
 }
 
+#[wasm_bindgen]
+extern "C" {
+    /// A cloud or mesh of the caller's, its arrays in memory of their own; `pkg/clouds.js` has checked their types.
+    pub type PointCloud;
+    #[wasm_bindgen(method, getter)]
+    fn positions(this: &PointCloud) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn colors(this: &PointCloud) -> Option<Uint8Array>;
+    #[wasm_bindgen(method, getter)]
+    fn normals(this: &PointCloud) -> Option<Float32Array>;
+    #[wasm_bindgen(method, getter)]
+    fn attributes(this: &PointCloud) -> Option<Object>;
+    #[wasm_bindgen(method, getter)]
+    fn origin(this: &PointCloud) -> Option<Array>;
+    #[wasm_bindgen(method, getter)]
+    fn indices(this: &PointCloud) -> Option<Uint32Array>;
+}
+
+impl PointCloud {
+    fn read(&self) -> RawCloud {
+        let positions = self.positions();
+        let positions = match positions.dyn_ref::<Float64Array>() {
+            Some(values) => Positions::F64(values.to_vec()),
+            None => Positions::F32(positions.unchecked_into::<Float32Array>().to_vec()),
+        };
+        let attributes = self.attributes().unwrap_or_default();
+        RawCloud {
+            colors: self.colors().map(|values| values.to_vec()),
+            normals: self.normals().map(|values| values.to_vec()),
+            attributes: Object::entries(&attributes)
+                .iter()
+                .map(|entry| attribute(&entry.unchecked_into()))
+                .collect(),
+            origin: self
+                .origin()
+                .map(|o| [0, 1, 2].map(|axis| o.get(axis).as_f64().unwrap_or(0.0))),
+            ..RawCloud::new(positions)
+        }
+    }
+}
+
+/// An entry `[name, values]`.
+fn attribute(entry: &Array) -> Attribute {
+    Attribute {
+        name: entry.get(0).as_string().unwrap_or_default(),
+        values: entry.get(1).unchecked_into::<Float32Array>().to_vec(),
+    }
+}
+
+/// A `ReducedCloud` with positions of the input's type.
+fn reduced_to_js(result: &ReducedCloud, input: &RawCloud) -> JsResult {
+    let reduced = &result.reduced;
+    let cloud = &reduced.cloud;
+    let normals = cloud.normals.as_deref().unwrap_or_default();
+    let fields = object([
+        ("positions", positions_to_js(&cloud.points, cloud, input)),
+        ("normals", triples(normals)),
+        ("colors", colors_to_js(&cloud.colors)),
+        ("variation", Float32Array::from(&reduced.variation[..]).into()),
+        ("weights", Float32Array::from(&reduced.weights[..]).into()),
+        ("nearest", Uint32Array::from(&reduced.nearest[..]).into()),
+        ("report", to_js(&result.report)?),
+    ])?;
+    attach(fields, &cloud.attributes, cloud.origin)
+}
+
+/// A `SurfaceMesh` with positions of the input's type.
+fn surface_to_js(surface: &Surface, input: &RawCloud) -> JsResult {
+    let mesh = &surface.mesh;
+    let cloud = &surface.cloud.reduced.cloud;
+    let fields = object([
+        ("positions", positions_to_js(&mesh.vertices, cloud, input)),
+        ("normals", triples(&mesh.normals)),
+        ("indices", Uint32Array::from(mesh.triangles.as_flattened()).into()),
+        ("colors", colors_to_js(&surface.colors)),
+        ("cloud", reduced_to_js(&surface.cloud, input)?),
+        ("report", to_js(&surface.report)?),
+    ])?;
+    attach(fields, &surface.attributes, cloud.origin)
+}
+
+/// Points of the unit frame in the caller's, single or double precision as the input was.
+fn positions_to_js(points: &[Vec3], cloud: &Cloud, input: &RawCloud) -> JsValue {
+    let coordinates = points.iter().flat_map(|&p| cloud.frame.to_caller(p));
+    match input.positions {
+        Positions::F32(_) => {
+            Float32Array::from(&coordinates.map(|x| x as f32).collect::<Vec<_>>()[..]).into()
+        }
+        Positions::F64(_) => Float64Array::from(&coordinates.collect::<Vec<_>>()[..]).into(),
+    }
+}
+
+fn triples(vectors: &[Vec3]) -> JsValue {
+    let flat: Vec<f32> = vectors.iter().flat_map(|v| v.to_array()).collect();
+    Float32Array::from(&flat[..]).into()
+}
+
+fn colors_to_js(colors: &Option<Vec<[u8; 3]>>) -> JsValue {
+    optional(colors, |colors| Uint8Array::from(colors.as_flattened()))
+}
+
+fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
+    value.as_ref().map_or(JsValue::UNDEFINED, |value| array(value).into())
+}
+
+/// Adds `attributes` and `origin`, where there are any.
+fn attach(cloud: JsValue, attributes: &[Attribute], origin: Option<[f64; 3]>) -> JsResult {
+    if !attributes.is_empty() {
+        let table = Object::new();
+        for Attribute { name, values } in attributes {
+            Reflect::set(&table, &name.into(), &Float32Array::from(&values[..]))?;
+        }
+        Reflect::set(&cloud, &"attributes".into(), &table)?;
+    }
+    if let Some(origin) = origin {
+        let origin: Array = origin.into_iter().map(JsValue::from).collect();
+        Reflect::set(&cloud, &"origin".into(), &origin)?;
+    }
+    Ok(cloud)
+}
+
+/// Says what only this file knows. Wasm memory never shrinks, so its size is its peak.
+fn sign(report: &mut ReduceReport) {
+    const PAGE: u64 = 65_536;
+    report.peak_memory_bytes = core::arch::wasm32::memory_size(0) as u64 * PAGE;
+}
+
 /// Calls `f(stage, fraction)`; a truthy answer, or an exception, stops the job.
 struct JsProgress(Function);
 
 impl Progress for JsProgress {
     fn update(&mut self, stage: Stage, fraction: f32) -> crate::Result<()> {
-        match self
+        let answer = self
             .0
-            .call2(&JsValue::NULL, &stage.name().into(), &fraction.into())
-        {
+            .call2(&JsValue::NULL, &stage.name().into(), &fraction.into());
+        match answer {
             Ok(stop) if stop.is_falsy() => Ok(()),
             _ => Err(Error::Cancelled),
         }
@@ -99,15 +321,11 @@ impl Progress for JsProgress {
 
 impl From<Error> for JsValue {
     fn from(error: Error) -> JsValue {
+        let index = error.index().map_or(JsValue::UNDEFINED, |i| (i as f64).into());
         let fields = [
             ("code", error.code().into()),
             ("message", error.to_string().into()),
-            (
-                "index",
-                error
-                    .index()
-                    .map_or(JsValue::UNDEFINED, |i| (i as f64).into()),
-            ),
+            ("index", index),
             ("expected", error.expected().into()),
             ("found", error.found().into()),
         ];
@@ -123,11 +341,20 @@ fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
     }
 }
 
-/// An object with these properties.
+fn format_named(name: &str) -> Result<Format, Error> {
+    Format::ALL
+        .into_iter()
+        .find(|format| format.name() == name)
+        .ok_or_else(|| bad_option("format", "ply or xyz", name))
+}
+
+/// An object with these properties; those that are undefined are left out.
 fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     let object = Object::new();
     for (name, value) in fields {
-        Reflect::set(&object, &name.into(), &value)?;
+        if !value.is_undefined() {
+            Reflect::set(&object, &name.into(), &value)?;
+        }
     }
     Ok(object.into())
 }
