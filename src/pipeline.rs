@@ -13,7 +13,7 @@ use crate::octree::Octree;
 use crate::orient;
 use crate::par;
 use crate::params::{ReduceParams, Resolution, SurfaceParams, Target};
-use crate::progress::{Progress, Silent, Stage};
+use crate::progress::{Progress, Stage};
 use crate::reduce::{self, Reduced};
 use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
 use glam::Vec3;
@@ -180,8 +180,8 @@ pub fn reconstruct(
 /// Looks at positions `x y z …` without changing or refusing any.
 ///
 /// # Errors
-/// [`Error::EmptyCloud`] (no finite point), [`Error::BadLength`].
-pub fn inspect(positions: &[f64]) -> Result<CloudInfo> {
+/// [`Error::EmptyCloud`] (no finite point), [`Error::BadLength`], [`Error::Cancelled`].
+pub fn inspect(positions: &[f64], progress: &mut dyn Progress) -> Result<CloudInfo> {
     let finite: Vec<f64> = positions
         .chunks_exact(3)
         .filter(|p| p.iter().all(|x| x.is_finite()))
@@ -190,7 +190,7 @@ pub fn inspect(positions: &[f64]) -> Result<CloudInfo> {
         .collect();
     let whole = positions.len() / 3 * 3 == positions.len();
     let cloud = Cloud::from_f64(if whole { &finite } else { positions })?;
-    let (tree, features) = measure(&cloud, &mut Silent)?;
+    let (tree, features) = measure(&cloud, progress)?;
     let mut sorted: Vec<[u64; 3]> = finite
         .chunks_exact(3)
         .map(|p| [0, 1, 2].map(|a| (p[a] + 0.0).to_bits()))

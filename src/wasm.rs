@@ -13,7 +13,9 @@ use crate::progress::{Progress, Stage};
 use crate::report::ReduceReport;
 use crate::samples::{self, Model};
 use glam::Vec3;
-use js_sys::{Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array};
+use js_sys::{
+    Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
+};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
@@ -126,8 +128,14 @@ pub fn read(bytes: &[u8], options: JsValue) -> JsResult {
     };
     let fields = object([
         ("positions", positions),
-        ("colors", optional(&cloud.colors, |c| Uint8Array::from(&c[..]))),
-        ("normals", optional(&cloud.normals, |n| Float32Array::from(&n[..]))),
+        (
+            "colors",
+            optional(&cloud.colors, |c| Uint8Array::from(&c[..])),
+        ),
+        (
+            "normals",
+            optional(&cloud.normals, |n| Float32Array::from(&n[..])),
+        ),
     ])?;
     attach(fields, &cloud.attributes, cloud.origin)
 }
@@ -235,7 +243,10 @@ fn reduced_to_js(result: &ReducedCloud, input: &RawCloud) -> JsResult {
         ("positions", positions_to_js(&cloud.points, cloud, input)),
         ("normals", triples(normals)),
         ("colors", colors_to_js(&cloud.colors)),
-        ("variation", Float32Array::from(&reduced.variation[..]).into()),
+        (
+            "variation",
+            Float32Array::from(&reduced.variation[..]).into(),
+        ),
         ("weights", Float32Array::from(&reduced.weights[..]).into()),
         ("nearest", Uint32Array::from(&reduced.nearest[..]).into()),
         ("report", to_js(&result.report)?),
@@ -250,7 +261,10 @@ fn surface_to_js(surface: &Surface, input: &RawCloud) -> JsResult {
     let fields = object([
         ("positions", positions_to_js(&mesh.vertices, cloud, input)),
         ("normals", triples(&mesh.normals)),
-        ("indices", Uint32Array::from(mesh.triangles.as_flattened()).into()),
+        (
+            "indices",
+            Uint32Array::from(mesh.triangles.as_flattened()).into(),
+        ),
         ("colors", colors_to_js(&surface.colors)),
         ("cloud", reduced_to_js(&surface.cloud, input)?),
         ("report", to_js(&surface.report)?),
@@ -279,7 +293,9 @@ fn colors_to_js(colors: &Option<Vec<[u8; 3]>>) -> JsValue {
 }
 
 fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
-    value.as_ref().map_or(JsValue::UNDEFINED, |value| array(value).into())
+    value
+        .as_ref()
+        .map_or(JsValue::UNDEFINED, |value| array(value).into())
 }
 
 /// Adds `attributes` and `origin`, where there are any.
@@ -321,7 +337,9 @@ impl Progress for JsProgress {
 
 impl From<Error> for JsValue {
     fn from(error: Error) -> JsValue {
-        let index = error.index().map_or(JsValue::UNDEFINED, |i| (i as f64).into());
+        let index = error
+            .index()
+            .map_or(JsValue::UNDEFINED, |i| (i as f64).into());
         let fields = [
             ("code", error.code().into()),
             ("message", error.to_string().into()),
