@@ -7,6 +7,7 @@ use crate::par;
 use crate::progress::{Progress, Stage};
 use crate::report::DistanceStats;
 use glam::{DVec3, Vec3};
+use nalgebra::{Matrix6, Vector6};
 
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 256;
@@ -164,24 +165,27 @@ pub fn mesh_distance(
 
 /// Reduced points around a query that make up its local surface.
 const NEIGHBORS: usize = 8;
+/// Faces or sheets among them that are tried: at a corner three meet.
+const FACES: usize = 3;
 /// Neighbours whose normals differ by more (cosine of 60°) belong to another face.
-const FACE_COSINE: f32 = 0.5;
-/// Neighbours that stand out of the nearest one's tangent plane by more (sine of 30°) belong to another sheet.
-const SHEET_SINE: f32 = 0.5;
+const FACE_COSINE: f64 = 0.5;
+/// Neighbours that stand out by more belong to another sheet: the offset along the mean of both normals over the
+/// distance, which on one curved sheet is of second order in the distance.
+const SHEET_SINE: f64 = 0.2;
+/// Ridge on the quadric's second derivatives, relative to the weight of the data: a plane where the data leave them
+/// open, unnoticeable elsewhere.
+const RIDGE: f64 = 1e-6;
 
 /// Distances of `points` to the surface that reduced points stand for (all in the unit frame).
 ///
-/// With p_i the up to 8 nearest reduced points on the nearest one's face and sheet, n_i their normals turned to agree
-/// with the nearest one's, w_i Wendland weights that vanish at 1.1 times the distance of the eighth, and n(x) the
-/// normalised Σ w_i n_i, the distance is
+/// Of the 8 nearest reduced points those on the nearest one's face and sheet give a quadric height field over their
+/// mean tangent plane, fitted to their positions and normals by least squares with Wendland weights that vanish at 1.1
+/// times the distance of the eighth. The distance is to that quadric's tangent plane over `x`, at most the distance to
+/// the nearest reduced point. Points that are left are tried as further faces, and the nearest face counts. So points
+/// of a curved surface have a distance of fourth order in the spacing, where to tangent planes it is second.
 ///
-/// d(x) = |Σ w_i ½(n_i + n(x))·(x − p_i)| / Σ w_i,
-///
-/// at most the distance to the nearest reduced point. Both normals together make each term vanish on a sphere through
-/// p_i and x, where the tangent plane alone would be off by κr²/2 (S. Rusinkiewicz, "A symmetric objective function for
-/// ICP", 2019).
-///
-/// `reduced` is the tree of the reduced points, `normals` theirs, unit, in the order from which the tree was built.
+/// `reduced` is the tree of the reduced points, `normals` theirs, unit and of any sign, in the order from which the
+/// tree was built.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
@@ -195,48 +199,85 @@ pub fn cloud_distance(
         points,
         2.0,
         progress,
-        Vec::new,
-        |point, found: &mut Vec<Neighbor>| {
-            reduced.knn(point, NEIGHBORS, found);
-            surface_distance(point, found, reduced, normals)
+        || (Vec::new(), Vec::new()),
+        |x, (found, around)| {
+            reduced.knn(x, NEIGHBORS, found);
+            around.clear();
+            around.extend(found.iter().map(|n: &Neighbor| {
+                let normal = normals[reduced.order[n.index as usize] as usize];
+                (
+                    (reduced.points[n.index as usize] - x).as_dvec3(),
+                    normal.as_dvec3(),
+                )
+            }));
+            surface_distance(around)
         },
     )
 }
 
-/// d(x) of [`cloud_distance`] from the nearest points, nearest first.
-fn surface_distance(x: Vec3, found: &[Neighbor], reduced: &Octree, normals: &[Vec3]) -> f64 {
-    let at = |n: &Neighbor| reduced.points[n.index as usize];
-    let normal = |n: &Neighbor| normals[reduced.order[n.index as usize] as usize];
-    let (Some(first), Some(last)) = (found.first(), found.last()) else {
+/// The distance from the origin to the surface of these points with normals, nearest first; empties them.
+fn surface_distance(around: &mut Vec<(DVec3, DVec3)>) -> f64 {
+    let (Some(first), Some(last)) = (around.first(), around.last()) else {
         return 0.0;
     };
-    let (p, n) = (at(first), normal(first));
-    let radius = 1.1 * (last.distance2 as f64).sqrt();
-    if radius == 0.0 {
-        return 0.0;
+    let radius = 1.1 * last.0.length();
+    let mut least = first.0.length();
+    for _ in 0..FACES {
+        let Some(&(p, n)) = around.first() else { break };
+        if least == 0.0 {
+            break;
+        }
+        let mut face = [(DVec3::ZERO, DVec3::ZERO); NEIGHBORS];
+        let mut count = 0;
+        around.retain(|&(q, m)| {
+            let agreement = m.dot(n);
+            let mean = (n + m * agreement.signum()) / 2.0;
+            let on_face = agreement.abs() >= FACE_COSINE
+                && mean.dot(q - p).abs() <= SHEET_SINE * q.distance(p);
+            if on_face || count == 0 {
+                face[count] = (q, m * agreement.signum());
+                count += 1;
+                return false;
+            }
+            true
+        });
+        least = least.min(quadric_distance(&face[..count], radius));
     }
-    // Offsets to neighbours, their turned normals and weights.
-    let mut terms = [(DVec3::ZERO, DVec3::ZERO, 0.0); NEIGHBORS];
-    let mut mean = DVec3::ZERO;
-    for (term, neighbor) in terms.iter_mut().zip(found) {
-        let (q, m) = (at(neighbor), normal(neighbor));
-        let agreement = m.dot(n);
-        let is_same =
-            agreement.abs() >= FACE_COSINE && n.dot(q - p).abs() <= SHEET_SINE * q.distance(p);
-        if is_same || neighbor.index == first.index {
-            let weight = wendland((neighbor.distance2 as f64).sqrt() / radius).0;
-            let turned = m.as_dvec3() * f64::from(agreement.signum());
-            *term = ((x - q).as_dvec3(), turned, weight);
-            mean += turned * weight;
+    least
+}
+
+/// The distance from the origin to the tangent plane over it of the quadric through these points with normals.
+fn quadric_distance(face: &[(DVec3, DVec3)], radius: f64) -> f64 {
+    let weight = |q: DVec3| wendland(q.length() / radius).0;
+    let mean: DVec3 = face.iter().map(|&(q, m)| m * weight(q)).sum();
+    let up = mean.normalize_or(face[0].1);
+    let (u, v) = up.any_orthonormal_pair();
+    // Height a + b u + c v + d u²/2 + e u v + f v²/2 in units of the radius; rows for the height and both slopes.
+    let mut matrix = Matrix6::zeros();
+    let mut right = Vector6::zeros();
+    let mut total = 0.0;
+    for &(q, m) in face {
+        let (x, y, z) = (u.dot(q) / radius, v.dot(q) / radius, up.dot(q) / radius);
+        let steep = m.dot(up).max(FACE_COSINE);
+        let rows = [
+            (Vector6::new(1.0, x, y, x * x / 2.0, x * y, y * y / 2.0), z),
+            (Vector6::new(0.0, 1.0, 0.0, x, y, 0.0), -m.dot(u) / steep),
+            (Vector6::new(0.0, 0.0, 1.0, 0.0, x, y), -m.dot(v) / steep),
+        ];
+        total += weight(q);
+        for (row, value) in rows {
+            matrix += row * row.transpose() * weight(q);
+            right += row * (value * weight(q));
         }
     }
-    let mean = mean.normalize_or(n.as_dvec3());
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (offset, turned, weight) in terms {
-        sum += weight * 0.5 * (turned + mean).dot(offset);
-        total += weight;
+    for k in 3..6 {
+        matrix[(k, k)] += RIDGE * total;
     }
-    (sum / total).abs().min((first.distance2 as f64).sqrt())
+    let Some(cholesky) = matrix.cholesky() else {
+        return f64::INFINITY;
+    };
+    let height = cholesky.solve(&right);
+    radius * height[0].abs() / (1.0 + height[1] * height[1] + height[2] * height[2]).sqrt()
 }
 
 /// Statistics of `distance` over the points, in parallel; `weight` is about how many microseconds a point takes.

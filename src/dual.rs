@@ -95,8 +95,8 @@ pub(crate) fn build<F: Implicit>(
     for slice in cells.order.chunks(BRICKS_PER_SLICE) {
         let placed = par::map(
             slice.len(),
-            || (field.scratch(), Vec::new(), Vec::new()),
-            |k, (scratch, at, found)| cells.place(slice[k], field, (at, found), scratch),
+            || Probe::new(field),
+            |k, probe| cells.place(slice[k], probe),
         );
         placed.into_iter().for_each(|v| vertices.extend(v));
         progress(0.7 * vertices.len() as f32 / cells.vertices as f32)?;
@@ -113,10 +113,8 @@ pub(crate) fn build<F: Implicit>(
         for slice in cells.order.chunks(BRICKS_PER_SLICE) {
             let moved = par::map(
                 slice.len(),
-                || (field.scratch(), Vec::new(), Vec::new()),
-                |k, (scratch, at, found)| {
-                    cells.sharpen(slice[k], &on_crease, field, (at, found), scratch)
-                },
+                || Probe::new(field),
+                |k, probe| cells.sharpen(slice[k], &on_crease, probe),
             );
             for (v, position, normal) in moved.into_iter().flatten() {
                 let vertex = &mut vertices[v as usize];
@@ -141,6 +139,34 @@ pub(crate) fn build<F: Implicit>(
     quads = cut.into_iter().flatten().collect();
     progress(1.0)?;
     Ok(Dual { vertices, quads })
+}
+
+/// Positions and what the field has there; the memory of one worker.
+struct Probe<'a, F: Implicit> {
+    field: &'a F,
+    scratch: F::Scratch,
+    at: Vec<DVec3>,
+    found: Vec<Option<(f64, DVec3)>>,
+}
+
+impl<'a, F: Implicit> Probe<'a, F> {
+    fn new(field: &'a F) -> Probe<'a, F> {
+        Probe {
+            field,
+            scratch: field.scratch(),
+            at: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+
+    /// Values and gradients at the positions.
+    fn gradients(&mut self) -> &[Option<(f64, DVec3)>] {
+        self.found.clear();
+        self.found.resize(self.at.len(), None);
+        self.field
+            .gradients(&self.at, &mut self.found, &mut self.scratch);
+        &self.found
+    }
 }
 
 /// The crossed cells with their loops.
@@ -240,13 +266,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The vertices of a brick: from the mean of each loop's crossings towards the zero set.
-    fn place<F: Implicit>(
-        &self,
-        b: u32,
-        field: &F,
-        (at, found): (&mut Vec<DVec3>, &mut Vec<Option<(f64, DVec3)>>),
-        scratch: &mut F::Scratch,
-    ) -> Vec<Vertex> {
+    fn place<F: Implicit>(&self, b: u32, probe: &mut Probe<F>) -> Vec<Vertex> {
         let mut vertices = Vec::new();
         // Coordinates inside of the cell (0-1), and the cell's corner.
         let mut inner: Vec<(DVec3, DVec3)> = Vec::new();
@@ -273,11 +293,11 @@ impl<'a> Cells<'a> {
         }
         let edge = self.lattice.edge;
         for _ in 0..STEPS {
-            at.clear();
-            at.extend(moving.iter().map(|&v| inner[v].1 + edge * inner[v].0));
-            found.clear();
-            found.resize(at.len(), None);
-            field.gradients(at, found, scratch);
+            probe.at.clear();
+            probe
+                .at
+                .extend(moving.iter().map(|&v| inner[v].1 + edge * inner[v].0));
+            let found = probe.gradients();
             let mut k = 0;
             moving.retain(|&v| {
                 k += 1;
@@ -334,30 +354,28 @@ impl<'a> Cells<'a> {
         &self,
         b: u32,
         marked: &[bool],
-        field: &F,
-        (at, found): (&mut Vec<DVec3>, &mut Vec<Option<(f64, DVec3)>>),
-        scratch: &mut F::Scratch,
+        probe: &mut Probe<F>,
     ) -> Vec<(u32, Vec3, Vec3)> {
         let edge = self.lattice.edge;
         let mut loops_here = Vec::new();
-        at.clear();
+        probe.at.clear();
         for (place, cell) in self.of_brick(b) {
             let loops = self.loops(cell);
             for l in (0..loops.count())
                 .filter(|&l| marked[cell.first_vertex as usize + l] && !cell.filled)
             {
-                let (start, corner) = (at.len(), self.lattice.position(place));
+                let (start, corner) = (probe.at.len(), self.lattice.position(place));
                 let values = self.lattice.corners(place);
-                at.extend(loops.edges(l).map(|e| corner + edge * crossing(e, &values)));
-                loops_here.push((cell.first_vertex + l as u32, corner, start..at.len()));
+                probe
+                    .at
+                    .extend(loops.edges(l).map(|e| corner + edge * crossing(e, &values)));
+                loops_here.push((cell.first_vertex + l as u32, corner, start..probe.at.len()));
             }
         }
-        found.clear();
-        found.resize(at.len(), None);
-        field.gradients(at, found, scratch);
+        probe.gradients();
         let solve = |(v, corner, range): (u32, DVec3, std::ops::Range<usize>)| {
             let planes: Vec<(DVec3, DVec3)> = range
-                .filter_map(|k| tangent_plane(at[k], found[k]))
+                .filter_map(|k| tangent_plane(probe.at[k], probe.found[k]))
                 .collect();
             let (point, normal) = meet_planes(&planes)?;
             let inside = clamp((point - corner) / edge);
