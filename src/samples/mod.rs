@@ -10,11 +10,11 @@ mod solid;
 mod toys;
 
 use glam::{DVec3, dvec3};
-use solid::Part;
+use solid::Solid;
 use std::sync::LazyLock;
 
-static DUCK: LazyLock<Vec<Part>> = LazyLock::new(toys::duck);
-static PIG: LazyLock<Vec<Part>> = LazyLock::new(toys::pig);
+static DUCK: LazyLock<Solid> = LazyLock::new(|| Solid::new(toys::duck()));
+static PIG: LazyLock<Solid> = LazyLock::new(|| Solid::new(toys::pig()));
 
 /// Standard deviation of the range that [`sample`] takes, as a fraction of the diagonal: a good hand-held scanner.
 pub const NOISE: f64 = 5e-4;
@@ -83,21 +83,25 @@ impl Model {
     /// to the factor √2 near the surface. To first order the true distance is `distance / |gradient|`.
     pub fn distance(self, p: DVec3) -> f64 {
         match self {
-            Model::Duck => solid::distance(&DUCK, p),
-            Model::Pig => solid::distance(&PIG, p),
+            Model::Duck => DUCK.distance(p),
+            Model::Pig => PIG.distance(p),
             Model::Part => machined::distance(p),
         }
     }
 
-    /// Gradient of [`Model::distance`], outward, by central differences of 1e-5 of the diagonal: at most 1 long,
-    /// shorter in seams and at sharp edges.
+    /// Gradient of [`Model::distance`], outward, by differences over 1e-5 of the diagonal: at most 1 long, shorter in
+    /// seams and at sharp edges.
     pub fn gradient(self, p: DVec3) -> DVec3 {
         let (low, high) = self.bounds();
         let step = 1e-5 * low.distance(high);
-        let slope = |axis: DVec3| {
-            (self.distance(p + axis * step) - self.distance(p - axis * step)) / (2.0 * step)
-        };
-        dvec3(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z))
+        let tetrahedron = [
+            dvec3(1.0, -1.0, -1.0),
+            dvec3(-1.0, -1.0, 1.0),
+            dvec3(-1.0, 1.0, -1.0),
+            dvec3(1.0, 1.0, 1.0),
+        ];
+        let slope = |corner| corner * self.distance(p + corner * step);
+        tetrahedron.map(slope).iter().sum::<DVec3>() / (4.0 * step)
     }
 
     /// Bounding box, low and high corner, a little larger than the solid.
@@ -112,8 +116,8 @@ impl Model {
     /// Colour of the surface near `p`: r g b, 0 to 255.
     fn color(self, p: DVec3) -> [u8; 3] {
         match self {
-            Model::Duck => solid::color(&DUCK, p),
-            Model::Pig => solid::color(&PIG, p),
+            Model::Duck => DUCK.color(p),
+            Model::Pig => PIG.color(p),
             Model::Part => [176, 182, 190],
         }
     }

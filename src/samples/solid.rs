@@ -26,6 +26,18 @@ pub(super) enum Shape {
 }
 
 impl Shape {
+    /// The exact signed distance where that is less than `limit`, else some value not less than `limit`.
+    fn distance_below(&self, p: DVec3, limit: f64) -> f64 {
+        if let Shape::Ellipsoid(half_axes) = self {
+            // |p / r| grows by at most 1 / min r a unit of length.
+            let bound = ((p / *half_axes).length() - 1.0) * half_axes.min_element();
+            if bound >= limit {
+                return bound;
+            }
+        }
+        self.distance(p)
+    }
+
     /// Exact signed distance.
     fn distance(&self, p: DVec3) -> f64 {
         match self {
@@ -104,6 +116,7 @@ pub(super) struct Part {
     /// Width of the smooth seam; 0 joins sharply.
     blend: f64,
     color: [u8; 3],
+    /// Ball around the placed shape; [`Solid::new`] finds it.
     ball: (DVec3, f64),
 }
 
@@ -111,7 +124,7 @@ impl Part {
     /// A part that adds `shape` at the origin with a sharp seam, white.
     pub(super) fn add(shape: Shape) -> Part {
         Part {
-            ball: shape.ball(),
+            ball: (DVec3::ZERO, f64::INFINITY),
             shape,
             at: DVec3::ZERO,
             turn: [DVec3::X, DVec3::Y, DVec3::Z],
@@ -161,64 +174,73 @@ impl Part {
         self
     }
 
-    /// Point in the shape's frame.
-    fn local(&self, p: DVec3) -> DVec3 {
+    /// Its distance where that is less than `limit`, else some value not less than `limit`.
+    fn distance_below(&self, p: DVec3, limit: f64) -> f64 {
         let folded = if self.mirrored {
             DVec3::new(p.x, p.y, p.z.abs())
         } else {
             p
         };
+        let reach = limit + self.ball.1;
+        if reach <= 0.0 || folded.distance_squared(self.ball.0) >= reach * reach {
+            return f64::INFINITY;
+        }
         let q = folded - self.at;
-        DVec3::new(
+        let local = DVec3::new(
             self.turn[0].dot(q),
             self.turn[1].dot(q),
             self.turn[2].dot(q),
-        )
-    }
-
-    /// Its distance where that is less than `limit`, else any value not less than `limit`.
-    fn distance_below(&self, p: DVec3, limit: f64) -> f64 {
-        let q = self.local(p);
-        let reach = limit + self.ball.1;
-        let from_ball = q.distance_squared(self.ball.0);
-        if reach <= 0.0 || from_ball >= reach * reach {
-            return f64::INFINITY;
-        }
-        self.shape.distance(q)
+        );
+        self.shape.distance_below(local, limit)
     }
 }
 
-/// Signed distance of the solid that the parts make.
-pub(super) fn distance(parts: &[Part], p: DVec3) -> f64 {
-    let mut d = f64::INFINITY;
-    for part in parts {
-        // Outside these limits the part changes nothing, so skipping it leaves the value as it is.
-        match part.join {
-            Join::Add => d = smooth_min(d, part.distance_below(p, d + part.blend), part.blend).0,
-            Join::Cut => d = -smooth_min(-d, part.distance_below(p, part.blend - d), part.blend).0,
-        }
-    }
-    d
-}
+/// Parts joined in order.
+pub(super) struct Solid(Vec<Part>);
 
-/// Colour of the solid at a point of its surface; blended where the parts are.
-pub(super) fn color(parts: &[Part], p: DVec3) -> [u8; 3] {
-    let mut d = f64::INFINITY;
-    let mut mixed = DVec3::ZERO;
-    for part in parts {
-        let (value, share) = match part.join {
-            Join::Add => smooth_min(d, part.distance_below(p, d + part.blend), part.blend),
-            Join::Cut => {
-                let (value, share) =
-                    smooth_min(-d, part.distance_below(p, part.blend - d), part.blend);
-                (-value, share)
-            }
-        };
-        let [r, g, b] = part.color.map(f64::from);
-        mixed += (DVec3::new(r, g, b) - mixed) * share;
-        d = value;
+impl Solid {
+    pub(super) fn new(mut parts: Vec<Part>) -> Solid {
+        for part in &mut parts {
+            let (center, radius) = part.shape.ball();
+            let [x, y, z] = part.turn;
+            part.ball = (part.at + x * center.x + y * center.y + z * center.z, radius);
+        }
+        Solid(parts)
     }
-    [mixed.x, mixed.y, mixed.z].map(|c| c.round() as u8)
+
+    /// Signed distance.
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
+        self.fold(p, |_, _| ())
+    }
+
+    /// Colour near the surface; blended where the parts are.
+    pub(super) fn color(&self, p: DVec3) -> [u8; 3] {
+        let mut mixed = DVec3::ZERO;
+        self.fold(p, |part, share| {
+            let [r, g, b] = part.color.map(f64::from);
+            mixed += (DVec3::new(r, g, b) - mixed) * share;
+        });
+        mixed.to_array().map(|c| c.round() as u8)
+    }
+
+    /// Joins the parts' distances; `see` is told each part's share (0 to 1) in the value made so far.
+    fn fold(&self, p: DVec3, mut see: impl FnMut(&Part, f64)) -> f64 {
+        let mut d = f64::INFINITY;
+        for part in &self.0 {
+            // Beyond these limits the part changes nothing, so its distance need not be known.
+            let share;
+            (d, share) = match part.join {
+                Join::Add => smooth_min(d, part.distance_below(p, d + part.blend), part.blend),
+                Join::Cut => {
+                    let cut = part.distance_below(p, part.blend - d);
+                    let (value, share) = smooth_min(-d, cut, part.blend);
+                    (-value, share)
+                }
+            };
+            see(part, share);
+        }
+        d
+    }
 }
 
 /// Quadratic smooth minimum of width `k`, and the share of `b` in it (0 to 1).

@@ -3,7 +3,7 @@
 use super::solid::{Part, Shape};
 use glam::{DVec3, dvec3};
 
-/// The solid's boundary goes through every part: a closed surface without a handle.
+/// A bath duck.
 pub(super) fn duck() -> Vec<Part> {
     const YELLOW: [u8; 3] = [250, 205, 45];
     const WING: [u8; 3] = [243, 184, 30];
@@ -49,28 +49,28 @@ pub(super) fn duck() -> Vec<Part> {
             .blend(0.22)
             .color(WING),
         Part::add(Shape::RoundCone(
-            dvec3(-1.0, 1.2, 2.85),
-            0.72,
-            dvec3(-3.1, 1.95, 2.75),
-            0.3,
+            dvec3(-0.9, 1.15, 2.8),
+            0.8,
+            dvec3(-2.95, 1.85, 2.5),
+            0.42,
         ))
         .mirrored()
         .blend(0.18)
         .color(WING),
         Part::add(Shape::RoundCone(
-            dvec3(-0.9, 0.6, 2.95),
-            0.66,
-            dvec3(-2.85, 0.95, 2.85),
-            0.28,
+            dvec3(-0.8, 0.6, 2.9),
+            0.74,
+            dvec3(-2.75, 1.05, 2.7),
+            0.4,
         ))
         .mirrored()
         .blend(0.18)
         .color(WING),
         Part::add(Shape::RoundCone(
-            dvec3(-0.7, 0.1, 2.95),
-            0.58,
-            dvec3(-2.35, 0.1, 2.9),
-            0.26,
+            dvec3(-0.7, 0.15, 2.9),
+            0.62,
+            dvec3(-2.35, 0.3, 2.8),
+            0.36,
         ))
         .mirrored()
         .blend(0.18)
