@@ -21,10 +21,49 @@ pub struct Sites {
     pub normals: Vec<Vec3>,
     /// Distance of neighbours on the surface.
     pub spacing: Vec<f32>,
+    /// Who is next to whom.
+    pub graph: Graph,
     /// Standard deviation of the noise across the surface.
     pub noise: f32,
     /// Whether the normals' signs are the caller's and to be kept.
     pub oriented: bool,
+}
+
+/// A site's spacing is at most this times the median of its neighbours': a straggler far from the surface has neighbours
+/// on it, and must not reach as far as it is lonely.
+const MOST_SPACING: f32 = 1.5;
+
+impl Sites {
+    /// Gathers them. Cost: one k-nearest query a site.
+    pub fn new(
+        tree: Octree,
+        normals: Vec<Vec3>,
+        spacing: Vec<f32>,
+        noise: f32,
+        oriented: bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Sites> {
+        let graph = Graph::build(&tree, progress)?;
+        let capped = |i: usize| {
+            let mut near: Vec<f32> = graph
+                .of(i as u32)
+                .iter()
+                .map(|&j| spacing[j as usize])
+                .collect();
+            near.sort_unstable_by(f32::total_cmp);
+            near.get(near.len() / 2)
+                .map_or(spacing[i], |&m| spacing[i].min(MOST_SPACING * m))
+        };
+        let spacing = (0..spacing.len()).map(capped).collect();
+        Ok(Sites {
+            tree,
+            normals,
+            spacing,
+            graph,
+            noise,
+            oriented,
+        })
+    }
 }
 
 /// A sub-domain Ω_i.
@@ -60,9 +99,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// Nearest neighbours of every site that has a normal.
-    fn build(sites: &Sites, progress: &mut dyn Progress) -> Result<Graph> {
-        let tree = &sites.tree;
+    fn build(tree: &Octree, progress: &mut dyn Progress) -> Result<Graph> {
         let lists = par::map_progress(
             tree.points.len(),
             2.0,
@@ -94,46 +131,27 @@ impl Graph {
     }
 }
 
-/// All sub-domains, in Morton order of their cells, and the graph they grew on.
-#[derive(Debug, Clone)]
-pub struct Cells {
-    /// Every site with a normal is core of exactly one.
-    pub subdomains: Vec<Subdomain>,
-    /// Who is next to whom.
-    pub graph: Graph,
+/// The sub-domains in Morton order of their cells; every site with a normal is core of exactly one. Cost: a few steps for
+/// each site and its neighbours.
+pub fn divide(sites: &Sites, progress: &mut dyn Progress) -> Result<Vec<Subdomain>> {
+    let ranges = sites.tree.cut(|node| node.range().len() <= CORE);
+    let lists = par::map_progress(
+        ranges.len(),
+        30.0,
+        (Stage::Cells, progress),
+        || Growth::new(sites.tree.points.len()),
+        |i, growth| {
+            let cell: Vec<u32> = ranges[i].clone().map(|i| i as u32).collect();
+            growth.divide(sites, &cell)
+        },
+    )?;
+    Ok(lists.into_iter().flatten().collect())
 }
 
-impl Cells {
-    /// Divides the sites. Cost: one k-nearest query a site.
-    pub fn divide(sites: &Sites, progress: &mut dyn Progress) -> Result<Cells> {
-        let graph = Graph::build(sites, progress)?;
-        let ranges = sites.tree.cut(|node| node.range().len() <= CORE);
-        let n = sites.tree.points.len();
-        let lists = par::map_progress(
-            ranges.len(),
-            30.0,
-            (Stage::Cells, progress),
-            || Growth::new(n),
-            |i, growth| {
-                let cell: Vec<u32> = ranges[i].clone().map(|i| i as u32).collect();
-                growth.divide(sites, &graph, &cell)
-            },
-        )?;
-        Ok(Cells {
-            subdomains: lists.into_iter().flatten().collect(),
-            graph,
-        })
-    }
-
-    /// Cuts a sub-domain in two along the longest axis of its core and grows both again; the core must have at least
-    /// two sites.
-    pub fn split(
-        &self,
-        sites: &Sites,
-        subdomain: &Subdomain,
-        growth: &mut Growth,
-    ) -> Vec<Subdomain> {
-        let mut core = subdomain.support[..subdomain.core].to_vec();
+impl Subdomain {
+    /// The two halves along the longest axis of the core, grown anew; the core must have at least two sites.
+    pub fn split(&self, sites: &Sites, growth: &mut Growth) -> Vec<Subdomain> {
+        let mut core = self.support[..self.core].to_vec();
         let position = |i: &u32| sites.tree.points[*i as usize];
         let lo = core
             .iter()
@@ -154,7 +172,7 @@ impl Cells {
         let (low, high) = core.split_at(core.len() / 2);
         [low, high]
             .into_iter()
-            .flat_map(|half| growth.divide(sites, &self.graph, half))
+            .flat_map(|half| growth.divide(sites, half))
             .collect()
     }
 }
@@ -196,7 +214,7 @@ impl Growth {
     }
 
     /// The sub-domains of the sites of one cell.
-    fn divide(&mut self, sites: &Sites, graph: &Graph, cell: &[u32]) -> Vec<Subdomain> {
+    fn divide(&mut self, sites: &Sites, cell: &[u32]) -> Vec<Subdomain> {
         let usable = |i: u32| sites.normals[i as usize] != Vec3::ZERO;
         for &i in cell {
             self.in_cell[i as usize] = usable(i);
@@ -209,8 +227,8 @@ impl Growth {
                     core: 0,
                     normals: Vec::new(),
                 };
-                self.grow_core(sites, graph, seed, &mut s);
-                self.grow_overlap(sites, graph, &mut s);
+                self.grow_core(sites, seed, &mut s);
+                self.grow_overlap(sites, &mut s);
                 s.support.iter().for_each(|&i| self.place[i as usize] = 0);
                 out.push(s);
             }
@@ -235,7 +253,7 @@ impl Growth {
     }
 
     /// The part of the cell that is reached from `seed`, by the smallest turns of the normal first (Prim's algorithm).
-    fn grow_core(&mut self, sites: &Sites, graph: &Graph, seed: u32, s: &mut Subdomain) {
+    fn grow_core(&mut self, sites: &Sites, seed: u32, s: &mut Subdomain) {
         self.heap.push(Reverse((0, seed, seed)));
         while let Some(Reverse((_, j, from))) = self.heap.pop() {
             if !self.in_cell[j as usize] {
@@ -243,7 +261,7 @@ impl Growth {
             }
             self.in_cell[j as usize] = false;
             self.take(sites, j, from, s);
-            for &k in graph.of(j) {
+            for &k in sites.graph.of(j) {
                 if self.in_cell[k as usize] && compatible(sites, j, k) {
                     let turn = 1.0
                         - sites.normals[j as usize]
@@ -257,7 +275,7 @@ impl Growth {
     }
 
     /// The sites around the core, nearest first, that are reached over compatible pairs.
-    fn grow_overlap(&mut self, sites: &Sites, graph: &Graph, s: &mut Subdomain) {
+    fn grow_overlap(&mut self, sites: &Sites, s: &mut Subdomain) {
         let points = &sites.tree.points;
         let center = s.support.iter().map(|&i| points[i as usize]).sum::<Vec3>() / s.core as f32;
         let spacing = sites.spacing[s.support[0] as usize];
@@ -267,7 +285,7 @@ impl Growth {
         loop {
             while next < s.support.len() {
                 let i = s.support[next];
-                for &k in graph.of(i) {
+                for &k in sites.graph.of(i) {
                     let usable =
                         self.place[k as usize] == 0 && sites.normals[k as usize] != Vec3::ZERO;
                     if usable && compatible(sites, i, k) {

@@ -23,7 +23,7 @@ pub struct Field<'a> {
     functions: &'a [LocalFit],
     signs: &'a [f32],
     tree: &'a Octree,
-    /// R_p of every site, unit frame; 0 where the site is in no sub-domain.
+    /// R_p of every site, unit frame; 0 where the site is part of no surface.
     pub reach: Vec<f32>,
     /// Sub-domain of every site.
     owner: Vec<u32>,
@@ -72,7 +72,13 @@ impl<'a> Field<'a> {
             .spacing
             .iter()
             .zip(&owner)
-            .map(|(&h, &s)| if s == u32::MAX { 0.0 } else { REACH * h })
+            .map(|(&h, &s)| {
+                if s != u32::MAX && signs.kept[s as usize] {
+                    REACH * h
+                } else {
+                    0.0
+                }
+            })
             .collect();
         let node_reach = tree
             .nodes

@@ -6,7 +6,7 @@
 //!
 //! Every function is right up to its sign: f and −f fit the sites equally well, and [`crate::orient`] chooses.
 
-use crate::cells::{Cells, Growth, Sites, Subdomain};
+use crate::cells::{Growth, Sites, Subdomain};
 use crate::error::Result;
 use crate::kernel::phi;
 use crate::octree::Octree;
@@ -104,7 +104,7 @@ const ROUGHNESS: f64 = 0.25;
 /// A sub-domain is cut in two and fitted again when the rms distance of the input points nearest to its core exceeds
 /// `accuracy` and what the noise explains (section 5: "computed and refined until desired accuracy").
 pub fn fit(
-    cells: Cells,
+    subdomains: Vec<Subdomain>,
     sites: &Sites,
     input: &Octree,
     input_noise: f32,
@@ -112,7 +112,6 @@ pub fn fit(
     progress: &mut dyn Progress,
 ) -> Result<Fits> {
     let fitting = Fitting {
-        cells: &cells,
         sites,
         input,
         owned: input_of_sites(sites, input),
@@ -120,13 +119,13 @@ pub fn fit(
         params,
     };
     let done = par::map_progress(
-        cells.subdomains.len(),
+        subdomains.len(),
         150.0,
         (Stage::Fit, progress),
         || Growth::new(sites.tree.points.len()),
         |i, growth| {
             let mut out = Vec::new();
-            fitting.refine(cells.subdomains[i].clone(), 0, growth, &mut out);
+            fitting.refine(subdomains[i].clone(), 0, growth, &mut out);
             out
         },
     )?;
@@ -154,7 +153,6 @@ type Refined = (Subdomain, LocalFit, Vec<(u32, f32)>);
 
 /// What the refinement of every sub-domain reads.
 struct Fitting<'a> {
-    cells: &'a Cells,
     sites: &'a Sites,
     input: &'a Octree,
     /// For every site the input points nearest to it.
@@ -185,7 +183,7 @@ impl Fitting<'_> {
             out.push((subdomain, function, residuals));
             return;
         }
-        for half in self.cells.split(self.sites, &subdomain, growth) {
+        for half in subdomain.split(self.sites, growth) {
             self.refine(half, cuts + 1, growth, out);
         }
     }

@@ -13,7 +13,7 @@
 //! Every connected component then gets the sign that makes its enclosed volume positive; open sheets without a clear
 //! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis).
 
-use crate::cells::{Graph, Sites};
+use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
 use crate::par;
@@ -31,8 +31,9 @@ pub struct Signs {
     pub energy: f64,
     /// Oriented unit normal of every site; zero where the site belongs to no sub-domain.
     pub normals: Vec<Vec3>,
-    /// Connected components of the graph of sub-domains.
-    pub components: usize,
+    /// Whether the sub-domain is part of a surface: its connected component has at least [`SMALLEST`] sites of its own,
+    /// or is the largest. Fewer are taken for outliers.
+    pub kept: Vec<bool>,
 }
 
 /// An edge between sub-domains `a` < `b`; positive weight: same sign.
@@ -49,11 +50,14 @@ type Sample = (u32, u32, Vec3);
 /// Weight of an edge between sub-domains that share no site, against one of full overlap.
 const TOUCHING: f32 = 0.25;
 
+/// Sites of the smallest connected component that counts as a surface, unless it is the largest: fewer than a
+/// sub-domain's support cannot be told from scattered points.
+pub const SMALLEST: usize = 16;
+
 /// Infers the signs; with `sites.oriented` every sign is +1 already.
 pub fn orient(
     fits: &Fits,
     sites: &Sites,
-    graph: &Graph,
     propagation: Propagation,
     progress: &mut dyn Progress,
 ) -> Result<Signs> {
@@ -77,7 +81,7 @@ pub fn orient(
                 .collect::<Vec<Vec3>>()
         },
     )?;
-    let edges = edges(fits, sites, graph, &gradients);
+    let edges = edges(fits, sites, &gradients);
     let adjacency = Adjacency::new(n, &edges);
     let mut signs = vec![1.0; n];
     let mut components = adjacency.components();
@@ -97,13 +101,29 @@ pub fn orient(
         }
     }
     let normals = site_normals(fits, sites, &gradients, &signs);
+    let kept = kept(&components, fits);
     progress.update(Stage::Orient, 1.0)?;
     Ok(Signs {
         energy: energy(&edges, &signs),
         signs,
         normals,
-        components: components.len(),
+        kept,
     })
+}
+
+/// [`Signs::kept`].
+fn kept(components: &[Vec<u32>], fits: &Fits) -> Vec<bool> {
+    let size = |c: &Vec<u32>| {
+        c.iter()
+            .map(|&s| fits.subdomains[s as usize].core)
+            .sum::<usize>()
+    };
+    let enough = SMALLEST.min(components.iter().map(size).max().unwrap_or(0));
+    let mut kept = vec![false; fits.subdomains.len()];
+    for component in components.iter().filter(|c| size(c) >= enough) {
+        component.iter().for_each(|&s| kept[s as usize] = true);
+    }
+    kept
 }
 
 /// E / Σ |w|.
@@ -117,7 +137,7 @@ fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
 }
 
 /// All edges, sorted by (a, b).
-fn edges(fits: &Fits, sites: &Sites, graph: &Graph, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
+fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
     let n_sites = sites.tree.points.len();
     let mut samples: Vec<Sample> = Vec::new();
     let mut owner = vec![u32::MAX; n_sites];
@@ -143,7 +163,7 @@ fn edges(fits: &Fits, sites: &Sites, graph: &Graph, gradients: &[Vec<Vec3>]) -> 
     }
     // Pairs that only touch: (a, b, 0), once a neighbouring pair of sites.
     for i in 0..n_sites as u32 {
-        for &j in graph.of(i) {
+        for &j in sites.graph.of(i) {
             let (a, b) = (owner[i as usize], owner[j as usize]);
             if a != b && a != u32::MAX && b != u32::MAX {
                 shared.push((a.min(b), a.max(b), 0.0));

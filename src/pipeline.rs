@@ -1,7 +1,7 @@
 //! The stages in order: what the crate, the package and the page call.
 
 use crate::attach::attach;
-use crate::cells::{Cells, Sites};
+use crate::cells::{self, Sites};
 use crate::cloud::{Attribute, Cloud};
 use crate::distance::{cloud_distance, mesh_distance};
 use crate::error::{Error, Result};
@@ -135,14 +135,20 @@ pub fn reconstruct(
     }
     let (mut reduced, reason) = points_to_fit(cloud, &tree, &features, params, &mut clock)?;
     let sites = sites(&reduced, features.noise, params.orient, &mut clock)?;
-    let cells = Cells::divide(&sites, &mut clock)?;
-    let graph = cells.graph.clone();
-    let fits = fit::fit(cells, &sites, &tree, features.noise, params, &mut clock)?;
+    let subdomains = cells::divide(&sites, &mut clock)?;
+    let fits = fit::fit(
+        subdomains,
+        &sites,
+        &tree,
+        features.noise,
+        params,
+        &mut clock,
+    )?;
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
     }
-    let signs = orient::orient(&fits, &sites, &graph, params.propagation, &mut clock)?;
+    let signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
     let field = Field::new(&fits, &signs, &sites);
     let how = extract_params(&sites, params);
     let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
@@ -284,13 +290,7 @@ fn sites(
     };
     // Coarse sampling of curved parts looks like noise, so the reduced cloud is never noisier than its input.
     let noise = features.noise.min(input_noise);
-    Ok(Sites {
-        tree,
-        normals,
-        spacing: features.spacing,
-        noise,
-        oriented: !orient,
-    })
+    Sites::new(tree, normals, features.spacing, noise, !orient, progress)
 }
 
 /// How the surface of these sites is extracted.
