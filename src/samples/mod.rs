@@ -89,19 +89,15 @@ impl Model {
         }
     }
 
-    /// Gradient of [`Model::distance`], outward, by differences over 1e-5 of the diagonal: at most 1 long, shorter in
-    /// seams and at sharp edges.
+    /// Gradient of [`Model::distance`], outward, by central differences over 1e-5 of the diagonal: at most 1 long,
+    /// shorter in seams and at sharp edges.
     pub fn gradient(self, p: DVec3) -> DVec3 {
         let (low, high) = self.bounds();
         let step = 1e-5 * low.distance(high);
-        let tetrahedron = [
-            dvec3(1.0, -1.0, -1.0),
-            dvec3(-1.0, -1.0, 1.0),
-            dvec3(-1.0, 1.0, -1.0),
-            dvec3(1.0, 1.0, 1.0),
-        ];
-        let slope = |corner| corner * self.distance(p + corner * step);
-        tetrahedron.map(slope).iter().sum::<DVec3>() / (4.0 * step)
+        let slope = |axis: DVec3| {
+            (self.distance(p + axis * step) - self.distance(p - axis * step)) / (2.0 * step)
+        };
+        dvec3(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z))
     }
 
     /// Bounding box, low and high corner, a little larger than the solid.

@@ -1,6 +1,6 @@
 //! A simulated laser scanner.
 //!
-//! The model stands on a turntable in front of the sensor, is tilted, and is turned over for its underside: 22 poses
+//! The model stands on a turntable in front of the sensor, is tilted, and is turned over for its underside: 20 poses
 //! in all, each a little off its nominal angle and distance. From each pose a raster of rays, all of one angular pitch, goes over
 //! the model's bounding box. A ray that hits gives one point, so the density falls with the incidence and the distance
 //! and adds up where poses overlap, and what no pose sees stays empty. Returns at less than 7° to the surface are
@@ -22,13 +22,15 @@ pub(super) struct Hit {
     pub(super) normal: DVec3,
 }
 
-/// Elevation above the table in degrees, number of poses around, sensor distance in diagonals.
-const RINGS: [(f64, usize, f64); 5] = [
+/// Elevation above the table in degrees, number of poses around, sensor distance in diagonals. The last is a close-up
+/// of the front.
+const RINGS: [(f64, usize, f64); 6] = [
     (14.0, 8, 1.6),
-    (52.0, 6, 1.9),
-    (-42.0, 6, 1.9),
+    (52.0, 5, 1.9),
+    (-42.0, 4, 1.9),
     (90.0, 1, 2.2),
     (-90.0, 1, 2.2),
+    (22.0, 1, 1.0),
 ];
 /// Standard deviation of a pose's angles in degrees, and of its distance as a fraction.
 const POSE_JITTER: (f64, f64) = (1.5, 0.03);
