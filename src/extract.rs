@@ -106,6 +106,8 @@ pub const MOST_FILLED: f64 = 0.35;
 ///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
 ///   surface; components not closed by then stay open.
 ///
+/// A component that no fitted function reaches at all is none.
+///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
 pub fn extract<F: Implicit>(
@@ -177,14 +179,16 @@ fn decide_holes(dual: &mut Dual, boundary: Boundary, result: &mut Extracted) {
     for (v, degree) in degrees(dual).into_iter().enumerate() {
         sums[components.find(v as u32) as usize].2 |= degree < dual.vertices[v].degree;
     }
-    let stays_open = |&(area, filled, has_boundary): &(f64, f64, bool)| {
-        boundary == Boundary::Auto && (has_boundary || filled > MOST_FILLED * area)
+    let is_phantom = |&(area, filled, _): &(f64, f64, bool)| filled == area;
+    let stays_open = |sum: &(f64, f64, bool)| {
+        let is_unclosed = sum.2 || sum.1 > MOST_FILLED * sum.0;
+        is_phantom(sum) || boundary == Boundary::Auto && is_unclosed
     };
     dual.quads.retain(|quad| {
         !quad.filled || !stays_open(&sums[components.find(quad.vertices[0]) as usize])
     });
     let (mut area, mut filled) = (0.0, 0.0);
-    for sum in sums.iter().filter(|sum| sum.0 > 0.0) {
+    for sum in sums.iter().filter(|sum| !is_phantom(sum)) {
         if stays_open(sum) {
             area += sum.0 - sum.1;
             result.open += 1;

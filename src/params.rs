@@ -140,7 +140,7 @@ pub enum Smoothing {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Resolution {
-    /// About half the spacing of the fitted points.
+    /// Three quarters of the median spacing of the fitted points.
     Auto,
     /// Fraction of the diagonal, 1e-4 to 0.25.
     #[serde(untagged)]

@@ -90,8 +90,9 @@ const MIN_POINTS: usize = 4;
 /// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
 const MIN_REDUCED: usize = 64;
 
-/// Edge length of the extraction grid in median spacings.
-const EDGE: f64 = 0.5;
+/// Edge length of the extraction grid in median spacings: vertices are moved onto the zero set, so that edges of 0.5 to
+/// 0.9 spacings give the same error (bench clouds: within 2 %), at 11 and 3.4 triangles a point.
+const EDGE: f64 = 0.75;
 
 /// Reduces a cloud (section 3).
 ///

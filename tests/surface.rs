@@ -1,0 +1,405 @@
+//! From points to a mesh on shapes whose surface is known: natively and, the same tests, in both wasm builds.
+
+mod common;
+
+use common::{Shape, points};
+use glam::{DMat3, DVec3};
+use pointweave::params::{Boundary, Kernel, Propagation, Target};
+use pointweave::progress::Silent;
+use pointweave::report::{area, topology, volume};
+use pointweave::{Cloud, Error, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
+#[cfg(not(target_arch = "wasm32"))]
+use std::prelude::v1::test;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+#[cfg(target_arch = "wasm32")]
+wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
+
+fn surface(positions: &[f64], params: &SurfaceParams) -> Result<Surface, Error> {
+    reconstruct(&Cloud::from_f64(positions)?, params, &mut Silent)
+}
+
+/// Every point goes to the fit.
+fn unreduced() -> SurfaceParams {
+    SurfaceParams {
+        reduce: None,
+        ..Default::default()
+    }
+}
+
+/// Volume and area in the caller's unit.
+fn size(s: &Surface) -> (f64, f64) {
+    let d = s.cloud.reduced.cloud.frame.diagonal;
+    let mesh = &s.mesh;
+    (
+        volume(&mesh.vertices, &mesh.triangles) * d.powi(3),
+        area(&mesh.vertices, &mesh.triangles) * d * d,
+    )
+}
+
+/// Checks everything that is known of `shape`; distances are at most `error` (mean) in the shape's unit.
+fn check(shape: Shape, s: &Surface, error: f64) {
+    let t = topology(&s.mesh.triangles, s.mesh.vertices.len());
+    assert!(t.is_manifold(), "{shape:?}: {t:?}");
+    assert_eq!(
+        (t.boundary_edges, t.inconsistent_edges),
+        (0, 0),
+        "{shape:?}"
+    );
+    assert_eq!(t.genus, shape.genus(), "{shape:?}");
+    assert_eq!(s.report.genus, t.genus);
+    assert_eq!(s.report.triangles, s.mesh.triangles.len());
+
+    let (volume, area) = size(s);
+    assert!(
+        (volume / shape.volume() - 1.0).abs() < 0.02,
+        "{shape:?}: volume {volume}"
+    );
+    assert!(
+        (area / shape.area() - 1.0).abs() < 0.03,
+        "{shape:?}: area {area}"
+    );
+
+    let positions = s.positions_f64();
+    let off = points(&positions)
+        .map(|p| shape.distance(p).abs())
+        .sum::<f64>()
+        / s.mesh.vertices.len() as f64;
+    assert!(
+        off < error,
+        "{shape:?}: mean distance {off}, allowed {error}"
+    );
+
+    // Orientation: every normal of the fitted points and of the vertices looks out. On a crease either side is right.
+    let fitted = s.cloud.reduced.cloud.positions_f64();
+    let normals = s.cloud.reduced.cloud.normals.as_ref().unwrap();
+    let outward = points(&fitted)
+        .zip(normals)
+        .filter(|(p, n)| {
+            shape.distance(*p + n.as_dvec3() * 0.1) > shape.distance(*p - n.as_dvec3() * 0.1)
+        })
+        .count();
+    assert_eq!(outward, normals.len(), "{shape:?}: points oriented right");
+    let wrong = points(&positions)
+        .zip(&s.mesh.normals)
+        .filter(|(p, n)| shape.normal(*p).dot(n.as_dvec3()) < 0.0);
+    assert_eq!(wrong.count(), 0, "{shape:?}: vertex normals");
+}
+
+#[test]
+fn known_shapes_come_back_from_all_their_points() {
+    for shape in Shape::ALL {
+        check(
+            shape,
+            &surface(&shape.sample(6000, 0.0, 1), &unreduced()).unwrap(),
+            2e-3,
+        );
+    }
+}
+
+#[test]
+fn known_shapes_come_back_from_a_third_of_their_points() {
+    for shape in Shape::ALL {
+        let s = surface(&shape.sample(12_000, 0.0, 2), &SurfaceParams::default()).unwrap();
+        assert_eq!(s.report.reduce.output_points, 4000);
+        check(shape, &s, 3e-3);
+    }
+}
+
+#[test]
+fn noise_is_smoothed_away() {
+    let noise = 0.01;
+    for shape in Shape::ALL {
+        let s = surface(&shape.sample(9000, noise, 3), &unreduced()).unwrap();
+        // The mean of |noise| is 0.8 of its deviation; the surface is far closer than its points.
+        check(shape, &s, 0.5 * 0.8 * noise);
+        let measured = s.report.reduce.noise * s.cloud.reduced.cloud.frame.diagonal;
+        assert!(
+            (measured / noise - 1.0).abs() < 0.25,
+            "{shape:?}: noise {measured}"
+        );
+    }
+}
+
+#[test]
+fn every_kernel_and_both_propagations_agree_with_the_truth() {
+    let positions = Shape::Torus.sample(4000, 0.002, 4);
+    for kernel in [Kernel::Biharmonic, Kernel::Triharmonic, Kernel::ThinPlate] {
+        for propagation in [Propagation::Global, Propagation::Paper] {
+            let params = SurfaceParams {
+                kernel,
+                propagation,
+                ..unreduced()
+            };
+            check(Shape::Torus, &surface(&positions, &params).unwrap(), 4e-3);
+        }
+    }
+}
+
+#[test]
+fn frame_and_order_do_not_matter() {
+    let shape = Shape::Torus;
+    let positions = shape.sample(4000, 0.0, 5);
+    let (volume, area) = size(&surface(&positions, &unreduced()).unwrap());
+    let turn = DMat3::from_cols(
+        DVec3::new(0.36, 0.48, -0.8),
+        DVec3::new(-0.8, 0.6, 0.0),
+        DVec3::new(0.48, 0.64, 0.6),
+    );
+    let moved = |f: &dyn Fn(DVec3) -> DVec3| -> Vec<f64> {
+        points(&positions).flat_map(|p| f(p).to_array()).collect()
+    };
+    let shuffled: Vec<f64> = (0..4000)
+        .map(|i| i * 1237 % 4000)
+        .flat_map(|i| positions[3 * i..3 * i + 3].to_vec())
+        .collect();
+    for (name, other, scale) in [
+        ("itself", positions.clone(), 1.0f64),
+        ("shifted", moved(&|p| p + DVec3::new(5e5, -4e6, 30.0)), 1.0),
+        ("tiny", moved(&|p| p * 1e-9), 1e-9),
+        ("huge", moved(&|p| p * 1e9), 1e9),
+        ("turned", moved(&|p| turn * p), 1.0),
+        ("shuffled", shuffled, 1.0),
+    ] {
+        let s = surface(&other, &unreduced()).unwrap();
+        let (v, a) = size(&s);
+        assert!(
+            (v / volume / scale.powi(3) - 1.0).abs() < 2e-3,
+            "{name}: volume {v} for {volume}"
+        );
+        assert!(
+            (a / area / scale.powi(2) - 1.0).abs() < 2e-3,
+            "{name}: area {a} for {area}"
+        );
+        assert_eq!(
+            (s.report.components, s.report.boundary_edges),
+            (1, 0),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let positions = Shape::Box.sample(3000, 0.003, 6);
+    let [a, b] = [0, 1].map(|_| surface(&positions, &SurfaceParams::default()).unwrap());
+    assert_eq!(a.mesh, b.mesh);
+    assert_eq!(a.cloud.reduced.cloud, b.cloud.reduced.cloud);
+}
+
+#[test]
+fn open_sheets_stay_open_and_close_when_asked() {
+    // The upper half of a sphere.
+    let half: Vec<f64> = points(&Shape::Sphere.sample(8000, 0.0, 7))
+        .filter(|p| p.z > 0.0)
+        .flat_map(|p| p.to_array())
+        .collect();
+    let with = |boundary| {
+        surface(
+            &half,
+            &SurfaceParams {
+                boundary,
+                ..unreduced()
+            },
+        )
+        .unwrap()
+    };
+    let open = with(Boundary::Open);
+    assert!(open.report.boundary_edges > 0);
+    let lowest = points(&open.positions_f64())
+        .map(|p| p.z)
+        .fold(f64::INFINITY, f64::min);
+    let spacing = (2.0 * std::f64::consts::PI / (half.len() / 3) as f64).sqrt();
+    assert!(
+        lowest > -3.0 * spacing,
+        "the surface runs {lowest} past the border"
+    );
+    let closed = with(Boundary::Closed);
+    assert_eq!(
+        (closed.report.boundary_edges, closed.report.components),
+        (0, 1)
+    );
+    // Convex side out: all normals of the points look away from the centre.
+    let normals = open.cloud.reduced.cloud.normals.as_ref().unwrap();
+    assert!(
+        points(&half)
+            .zip(normals)
+            .all(|(p, n)| p.dot(n.as_dvec3()) > 0.0)
+    );
+}
+
+#[test]
+fn a_small_hole_is_closed() {
+    let holed: Vec<f64> = points(&Shape::Sphere.sample(8000, 0.0, 8))
+        .filter(|p| p.z < 0.95)
+        .flat_map(|p| p.to_array())
+        .collect();
+    let s = surface(&holed, &unreduced()).unwrap();
+    assert_eq!((s.report.boundary_edges, s.report.components), (0, 1));
+    assert!((size(&s).0 / Shape::Sphere.volume() - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn given_normals_are_used_as_they_are() {
+    let shape = Shape::Sphere;
+    let positions = shape.sample(3000, 0.0, 9);
+    // Inside out on purpose: the surface must follow.
+    let normals: Vec<f32> = points(&positions)
+        .flat_map(|p| (-p).as_vec3().to_array())
+        .collect();
+    let cloud = Cloud::from_f64(&positions)
+        .unwrap()
+        .with_normals(&normals)
+        .unwrap();
+    let params = SurfaceParams {
+        orient: false,
+        boundary: Boundary::Open,
+        ..unreduced()
+    };
+    let s = reconstruct(&cloud, &params, &mut Silent).unwrap();
+    assert!(size(&s).0 < 0.0);
+    let without = surface(&positions, &params).unwrap_err();
+    assert_eq!(without.code(), "bad-option");
+}
+
+#[test]
+fn colours_scalars_and_origin_reach_the_vertices() {
+    let shape = Shape::Sphere;
+    let positions = shape.sample(6000, 0.0, 10);
+    let colors: Vec<u8> = points(&positions)
+        .flat_map(|p| if p.x > 0.0 { [255, 0, 0] } else { [0, 0, 255] })
+        .collect();
+    let heights: Vec<f32> = points(&positions).map(|p| p.z as f32).collect();
+    let cloud = Cloud::from_f64(&positions)
+        .unwrap()
+        .with_colors(&colors)
+        .unwrap()
+        .with_attribute("height", &heights)
+        .unwrap()
+        .with_origin([1e6, 2e6, 3e6]);
+    let s = reconstruct(&cloud, &SurfaceParams::default(), &mut Silent).unwrap();
+    assert_eq!(s.cloud.reduced.cloud.origin, Some([1e6, 2e6, 3e6]));
+    let vertices = s.positions_f64();
+    let colors = s.colors.as_ref().unwrap();
+    for (p, c) in points(&vertices)
+        .zip(colors)
+        .filter(|(p, _)| p.x.abs() > 0.2)
+    {
+        assert_eq!(*c, if p.x > 0.0 { [255, 0, 0] } else { [0, 0, 255] });
+    }
+    assert_eq!(s.attributes[0].name, "height");
+    for (p, h) in points(&vertices).zip(&s.attributes[0].values) {
+        assert!((p.z - *h as f64).abs() < 0.1, "{h} at height {}", p.z);
+    }
+}
+
+#[test]
+fn degenerate_input_gives_a_clear_error() {
+    let line: Vec<f64> = (0..300)
+        .flat_map(|i| [i as f64, 2.0 * i as f64, 0.0])
+        .collect();
+    let cases: [(&str, Vec<f64>, &str); 7] = [
+        ("empty", vec![], "empty-cloud"),
+        ("one point", vec![1.0, 2.0, 3.0], "too-few-points"),
+        (
+            "three points",
+            vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+            "too-few-points",
+        ),
+        ("all equal", [1.0, 2.0, 3.0].repeat(100), "degenerate"),
+        ("collinear", line, "degenerate"),
+        ("two values", vec![1.0, 2.0], "bad-length"),
+        (
+            "a NaN",
+            vec![0.0, 0.0, 0.0, 1.0, f64::NAN, 0.0],
+            "non-finite",
+        ),
+    ];
+    for (name, positions, code) in cases {
+        let error = surface(&positions, &SurfaceParams::default()).unwrap_err();
+        assert_eq!(error.code(), code, "{name}");
+    }
+    let error = surface(&[0.0, 0.0, 0.0, 1.0, f64::NAN, 0.0], &unreduced()).unwrap_err();
+    assert_eq!(error.index(), Some(1));
+}
+
+#[test]
+fn odd_input_gives_a_manifold_mesh() {
+    let flat: Vec<f64> = points(&Shape::Box.sample(3000, 0.0, 11))
+        .flat_map(|p| [p.x, p.y, 0.0])
+        .collect();
+    let mut doubled = Shape::Sphere.sample(2000, 0.0, 12);
+    doubled.extend_from_within(..);
+    let mut rng = pointweave::rng::Rng::new(13);
+    let scattered: Vec<f64> = (0..6000).map(|_| rng.uniform()).collect();
+    let four = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    for (name, positions) in [
+        ("coplanar", flat),
+        ("duplicates", doubled),
+        ("random in a cube", scattered),
+        ("four points", four),
+    ] {
+        for boundary in [Boundary::Auto, Boundary::Open, Boundary::Closed] {
+            let params = SurfaceParams {
+                boundary,
+                ..Default::default()
+            };
+            match surface(&positions, &params) {
+                Ok(s) => {
+                    let t = topology(&s.mesh.triangles, s.mesh.vertices.len());
+                    assert!(t.is_manifold(), "{name}, {boundary:?}: {t:?}");
+                    assert!(s.mesh.vertices.iter().all(|v| v.is_finite()), "{name}");
+                    assert!(
+                        boundary != Boundary::Closed || t.boundary_edges == 0,
+                        "{name}"
+                    );
+                }
+                Err(error) => assert_eq!(error.code(), "degenerate", "{name}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn residuals_meet_the_accuracy_and_refinement_helps() {
+    let positions = Shape::Box.sample(9000, 0.0, 14);
+    let coarse = ReduceParams {
+        target: Target::Ratio(0.1),
+        ..Default::default()
+    };
+    let with = |accuracy| {
+        let params = SurfaceParams {
+            reduce: Some(coarse.clone()),
+            accuracy,
+            ..Default::default()
+        };
+        surface(&positions, &params).unwrap().report
+    };
+    let (loose, tight) = (with(0.1), with(6e-4));
+    assert_eq!(loose.refinements, 0);
+    assert!(
+        tight.refinements > 0,
+        "creases of a box in 900 points need refinement"
+    );
+    assert!(tight.residual.rms <= loose.residual.rms);
+    assert!(tight.beyond_accuracy < 0.5);
+}
+
+#[test]
+fn a_job_stops_when_asked_and_the_next_one_runs() {
+    let positions = Shape::Sphere.sample(3000, 0.0, 15);
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    for stop in [
+        Stage::Features,
+        Stage::Cluster,
+        Stage::Fit,
+        Stage::Orient,
+        Stage::Extract,
+    ] {
+        let mut listen = |stage: Stage, _: f32| stage != stop;
+        let error = reconstruct(&cloud, &SurfaceParams::default(), &mut listen).unwrap_err();
+        assert_eq!(error, Error::Cancelled, "{stop:?}");
+    }
+    assert!(reconstruct(&cloud, &SurfaceParams::default(), &mut Silent).is_ok());
+}
