@@ -625,6 +625,94 @@ fn lists_and_elements_before_the_points_are_passed_over() {
 }
 
 #[test]
+fn headers_of_many_dialects() {
+    let header = |element: &str, end: &str| {
+        let lines = [
+            "ply",
+            "comment a",
+            "format binary_little_endian 1.0",
+            "obj_info b",
+            &format!("element {element} 1"),
+            "comment c",
+            "property uint8 X",
+            "property uint8 y",
+            "property int8 z",
+            "element face 7",
+            "property list uchar int vertex_indices",
+            "end_header",
+        ];
+        lines
+            .map(|line| format!("{line}{end}"))
+            .concat()
+            .into_bytes()
+    };
+    for end in ["\n", "\r\n", "\r"] {
+        for element in ["vertex", "point"] {
+            // The first value is the byte of a line feed.
+            let bytes = [header(element, end), vec![10, 13, 255]].concat();
+            let cloud = read(&bytes, Format::Ply).unwrap();
+            assert_eq!(
+                cloud.positions,
+                Positions::F32(vec![10.0, 13.0, -1.0]),
+                "{end:?}"
+            );
+            assert_eq!(cloud.faces, 7);
+        }
+    }
+    for (bad, line) in [
+        ("ply\nformat ascii 2.0\n", 2),
+        ("ply\nformat text 1.0\n", 2),
+        ("ply\nproperty float x\n", 2),
+        ("ply\nelement vertex -1\n", 2),
+        ("ply\nelement vertex 1\nproperty list float x\n", 3),
+        ("ply\nelement vertex 1\nproperty word x\n", 3),
+        ("ply\nend_header\n", 2),
+        ("ply\nhello\n", 2),
+        ("plyformat", 1),
+    ] {
+        let error = read(bad.as_bytes(), Format::Ply).unwrap_err();
+        assert_eq!(
+            (error.code(), error.index()),
+            ("bad-file", Some(line)),
+            "{bad:?}: {error}"
+        );
+    }
+    let twice = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+                 property float x\nend_header\n1 2 3 4\n";
+    assert_eq!(
+        read(twice.as_bytes(), Format::Ply).unwrap_err().index(),
+        Some(3)
+    );
+}
+
+#[test]
+fn rows_of_text_say_their_line() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+                  property list uchar int n\nend_header\n";
+    for (rows, line) in [
+        ("0 0 0 0\n1 1 1\n", 10),
+        ("0 0 0 0\n\n1 1 1 1\n", 11),
+        ("0 0 0 0\n1 1 1 1 5 6\n", 10),
+        ("0 0 0 0\n1 1 a 0\n", 10),
+        ("0 0 0 -1\n1 1 1 0\n", 9),
+        ("0 0 0 0\n", 10),
+    ] {
+        let error = read(format!("{header}{rows}").as_bytes(), Format::Ply).unwrap_err();
+        assert_eq!(
+            (error.code(), error.index()),
+            ("bad-file", Some(line)),
+            "{rows:?}: {error}"
+        );
+    }
+    let cloud = read(
+        format!("{header}0 0 0 2 5 6\n1 1 1 0").as_bytes(),
+        Format::Ply,
+    )
+    .unwrap();
+    assert_eq!(cloud.points(), 2);
+}
+
+#[test]
 fn truncated_files_give_a_typed_error_or_whole_points() {
     for (format, bytes) in small_files() {
         let whole = read(&bytes, format).unwrap().points();
