@@ -221,9 +221,10 @@ fn open_sheets_stay_open_and_close_when_asked() {
         (0, 1)
     );
     // Convex side out: all normals of the points look away from the centre.
+    let fitted = open.cloud.reduced.cloud.positions_f64();
     let normals = open.cloud.reduced.cloud.normals.as_ref().unwrap();
     assert!(
-        points(&half)
+        points(&fitted)
             .zip(normals)
             .all(|(p, n)| p.dot(n.as_dvec3()) > 0.0)
     );
