@@ -54,6 +54,11 @@ impl Surface {
             .flat_map(|&v| frame.to_caller(v))
             .collect()
     }
+
+    /// Corners of the triangles: three vertex indices each.
+    pub fn indices(&self) -> &[u32] {
+        self.mesh.triangles.as_flattened()
+    }
 }
 
 /// What can be said of a cloud before anything is done to it. Lengths are in the caller's unit.

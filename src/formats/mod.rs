@@ -10,6 +10,7 @@ mod xyz;
 
 use crate::cloud::{Attribute, Cloud};
 use crate::error::{Error, Result};
+use crate::pipeline::Surface;
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +114,38 @@ impl RawCloud {
             dropped: 0,
             replaced: 0,
             faces: 0,
+        }
+    }
+
+    /// The points of a reduced cloud, in double precision.
+    pub fn of_cloud(cloud: &Cloud) -> RawCloud {
+        RawCloud {
+            colors: cloud.colors.as_ref().map(|c| c.as_flattened().to_vec()),
+            normals: cloud
+                .normals
+                .as_ref()
+                .map(|n| n.iter().flat_map(|n| n.to_array()).collect()),
+            attributes: cloud.attributes.clone(),
+            origin: cloud.origin,
+            ..RawCloud::new(Positions::F64(cloud.positions_f64()))
+        }
+    }
+
+    /// The vertices of a mesh, in double precision; its triangles are [`Surface::indices`].
+    pub fn of_surface(surface: &Surface) -> RawCloud {
+        RawCloud {
+            colors: surface.colors.as_ref().map(|c| c.as_flattened().to_vec()),
+            normals: Some(
+                surface
+                    .mesh
+                    .normals
+                    .iter()
+                    .flat_map(|n| n.to_array())
+                    .collect(),
+            ),
+            attributes: surface.attributes.clone(),
+            origin: surface.cloud.reduced.cloud.origin,
+            ..RawCloud::new(Positions::F64(surface.positions_f64()))
         }
     }
 
