@@ -1,8 +1,8 @@
 /** The caller's clouds and bytes on their way in: of the right kind, and no longer the caller's memory. */
+import { own } from './arrays.js';
 import { PointweaveError } from './errors.js';
-import { buffersOf } from './serve.js';
 
-/** @import { PointCloud, ReducedCloud, SurfaceMesh } from './types.js' */
+/** @import { PointCloud } from './types.js' */
 
 /**
  * A cloud's arrays as wasm takes them. Lengths and values are checked there.
@@ -76,37 +76,4 @@ function expectArray(name, value, type, expected = `a ${type.name}`) {
 function badInput(name, expected, found) {
   const kind = found === null ? 'null' : typeof found === 'object' ? found.constructor?.name ?? 'object' : typeof found;
   return new PointweaveError({ code: 'bad-input', message: `${name} is of type ${kind}: expected ${expected}`, expected, found: kind });
-}
-
-/**
- * The same arrays in memory of their own, copied or taken over.
- *
- * Shared memory cannot be taken over and is copied in either case. A view takes its whole buffer along.
- * @template T
- * @param {T} value
- * @param {boolean} [transfer]
- * @returns {T}
- */
-function own(value, transfer) {
-  return transfer ? structuredClone(copyArrays(value, isShared), { transfer: buffersOf(value) }) : copyArrays(value, () => true);
-}
-
-/** @param {ArrayBufferView} array */
-function isShared(array) {
-  return !(array.buffer instanceof ArrayBuffer);
-}
-
-/**
- * @template T
- * @param {T} value
- * @param {(array: ArrayBufferView) => boolean} chosen
- * @returns {T}
- */
-function copyArrays(value, chosen) {
-  if (ArrayBuffer.isView(value)) {
-    const array = /** @type {Float32Array} */ (/** @type {unknown} */ (value));
-    return chosen(value) ? /** @type {any} */ (array.slice()) : value;
-  }
-  if (typeof value !== 'object' || value === null || Array.isArray(value)) return value;
-  return /** @type {any} */ (Object.fromEntries(Object.entries(value).map(([key, part]) => [key, copyArrays(part, chosen)])));
 }

@@ -2,9 +2,9 @@
  * Where an engine's work is done: in this thread, or in a worker with or without more that lend it
  * their threads. A host takes one request at a time.
  */
+import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
-import { buffersOf } from './serve.js';
 
 /** @import { Build, Progress } from './types.js' */
 /** @import { CoreOptions, Glue, Request } from './core.js' */
@@ -32,8 +32,8 @@ import { buffersOf } from './serve.js';
  * @property {() => void} terminate
  */
 
-/** A pool that has not started by then never will (a policy forbids its workers, say). */
-const START_LIMIT_MS = 15_000;
+/** A pool that has not started by then never will, and the single-threaded build takes over. */
+const POOL_LIMIT_MS = 30_000;
 
 /**
  * @param {Glue} glue of the single-threaded build
@@ -100,9 +100,9 @@ export async function workerHost(startWorker, { build, threads, module }) {
     await main.ask({ request: { call: 'buildPool', args: [threads] } });
   };
 
-  const late = setTimeout(() => {
-    die(new PointweaveError({ code: 'internal', message: `no start within ${START_LIMIT_MS / 1000} s` }));
-  }, START_LIMIT_MS);
+  const late = build === 'threads' && setTimeout(() => {
+    die(new PointweaveError({ code: 'internal', message: `no pool within ${POOL_LIMIT_MS / 1000} s` }));
+  }, POOL_LIMIT_MS);
   main.hold(true);
   try {
     await start();
@@ -110,7 +110,7 @@ export async function workerHost(startWorker, { build, threads, module }) {
     end();
     throw error;
   } finally {
-    clearTimeout(late);
+    if (late) clearTimeout(late);
     main.hold(false);
   }
 

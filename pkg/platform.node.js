@@ -15,7 +15,7 @@ export const platform = {
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl).href, compileFrom),
   loadGlue,
   startWorker() {
-    const worker = new Worker(new URL('./worker.node.js', import.meta.url), { name: 'pointweave' });
+    const worker = new Worker(new URL('./worker.node.js', import.meta.url), { name: 'pointweave', execArgv: [] });
     worker.unref();
     return {
       post: (message, transfer) => worker.postMessage(message, transfer),

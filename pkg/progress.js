@@ -4,10 +4,10 @@
 
 /** @type {Record<string, [Stage, number][]>} */
 const SHARES = {
-  reduce: [['octree', 2], ['features', 38], ['cluster', 40], ['place', 5], ['report', 15]],
+  reduce: [['octree', 3], ['features', 38], ['cluster', 44], ['place', 3], ['report', 12]],
   reconstruct: [
-    ['octree', 1], ['features', 14], ['cluster', 15], ['place', 2],
-    ['cells', 3], ['fit', 20], ['orient', 5], ['extract', 30], ['report', 10],
+    ['octree', 1], ['features', 22], ['cluster', 25], ['place', 3],
+    ['cells', 9], ['fit', 12], ['orient', 3], ['extract', 22], ['report', 3],
   ],
   inspect: [['octree', 10], ['features', 90]],
 };

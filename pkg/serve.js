@@ -2,6 +2,7 @@
  * The worker's side of {@link import('./hosts.js').workerHost}: starts one core, then answers one
  * request after the other. It is never asked to stop; who has enough of it terminates the worker.
  */
+import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { toRecord } from './errors.js';
 
@@ -37,19 +38,4 @@ export function serve(port, loadGlue) {
       (error) => port.post({ error: toRecord(error) }),
     );
   });
-}
-
-/**
- * The buffers of all typed arrays in a message, to hand over instead of copy.
- * @param {unknown} value
- * @param {Set<ArrayBuffer>} [found]
- * @returns {ArrayBuffer[]}
- */
-export function buffersOf(value, found = new Set()) {
-  if (ArrayBuffer.isView(value)) {
-    if (value.buffer instanceof ArrayBuffer) found.add(value.buffer);
-  } else if (typeof value === 'object' && value !== null) {
-    for (const part of Object.values(value)) buffersOf(part, found);
-  }
-  return [...found];
 }

@@ -12,7 +12,7 @@ import { engineFor, rejection, sphere } from './support.mjs';
 const STAGES = ['octree', 'features', 'cluster', 'place', 'cells', 'fit', 'orient', 'extract', 'report'];
 
 /** Takes seconds. */
-const large = sphere(300_000);
+const large = sphere(100_000);
 
 /** Node's platform, which counts what is made. */
 function counting(changes = {}) {
@@ -124,7 +124,7 @@ test('an abort ends a worker within 100 ms; the next call has a fresh one of the
     const error = await rejection(engine.reconstruct(large, {
       signal: controller.signal,
       onProgress({ stage }) {
-        if (asked || stage !== 'cluster') return;
+        if (asked || stage !== 'features') return;
         asked = performance.now();
         setTimeout(() => {
           asked = performance.now();
@@ -179,6 +179,22 @@ test('what onProgress throws is what the call rejects with', async (t) => {
     const error = await rejection(engine.reduce(sphere(20_000), { onProgress() { throw mine; } }));
     assert.equal(error, mine);
     assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+  }
+});
+
+test('a worker that dies in the middle rejects its call, whichever it was, and the next call works', async (t) => {
+  for (const victim of [0, 2]) {
+    const workers = [];
+    const { api } = counting({ startWorker: () => (workers.push(platform.startWorker()), workers.at(-1)) });
+    const engine = await api.createEngine({ threads: 2 });
+    t.after(() => engine.dispose());
+    const error = await rejection(engine.reconstruct(large, {
+      onProgress: ({ stage }) => stage === 'features' && workers[victim].terminate(),
+    }));
+    assert.equal(error.code, 'internal');
+    assert.match(error.message, /the worker died/);
+    assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+    assert.equal(workers.length, 6);
   }
 });
 
