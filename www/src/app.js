@@ -6,7 +6,7 @@ import { listenToKeys } from './keys.js';
 import { MessageCard } from './messages.js';
 import { Numbers } from './numbers.js';
 import { ProgressBar } from './progress.js';
-import { Session } from './session.js';
+import { Session, keptOf } from './session.js';
 import { followTheme } from './theme.js';
 import { Viewer } from './viewer.js';
 
@@ -125,13 +125,14 @@ export class App {
     this.#offer('mesh', false);
     this.#show('points');
     this.#numbers.opened(scan.count);
+    this.#keep.set(this.#session.share);
     this.#describeKeep(this.#session.share);
   }
 
   #made(/** @type {Outcome} */ outcome) {
     const { reduced, mesh } = outcome;
     this.#viewer?.set('reduced', reduced);
-    this.#viewer?.set('mesh', mesh);
+    this.#viewer?.set('mesh', mesh && { ...mesh, closed: mesh.report.boundaryEdges === 0 });
     this.#offer('reduced', true);
     this.#offer('mesh', Boolean(mesh));
     this.#numbers.made(outcome);
@@ -174,8 +175,7 @@ export class App {
   #describeKeep(/** @type {number} */ share) {
     const scan = this.#session.scan;
     if (!scan) return;
-    const kept = Math.max(1, Math.round(scan.count * share));
-    this.#keep.describe(`${format.count(kept)} of ${format.count(scan.count)} points. Curved places keep more.`);
+    this.#keep.describe(`${format.count(keptOf(scan.count, share))} of ${format.count(scan.count)} points. Curved places keep more.`);
   }
 
   #turnUp() {

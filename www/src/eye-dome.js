@@ -4,6 +4,7 @@ import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 /**
  * Eye-dome lighting (Boucheny, 2009): a point that lies behind its neighbours on the screen gets darker, by
  * how far behind in log depth. It gives shape to clouds without normals, for one pass over the screen.
+ * Alpha says how much of it a pixel takes: 1 all, ½ nothing; 0 is background.
  */
 export class EyeDome {
   #target = new WebGLRenderTarget(1, 1, {
@@ -48,7 +49,8 @@ export class EyeDome {
           ivec2 there = here + ivec2(round(reach * distance * vec2(cos(angle), sin(angle))));
           behind += clamp(depth - logDepth(there), 0.0, LIMIT);
         }
-        gl_FragColor = vec4(color.rgb * exp(-STRENGTH * behind / 16.0), 1.0);
+        float part = 2.0 * color.a - 1.0;
+        gl_FragColor = vec4(color.rgb * exp(-STRENGTH * part * behind / 16.0), 1.0);
       }`,
   });
 

@@ -12,6 +12,7 @@ import { meshMaterial, pointMaterial } from './materials.js';
  * @property {Float32Array} [normals]
  * @property {Uint8Array} [colors]
  * @property {Uint32Array} [indices]
+ * @property {boolean} [closed]  the mesh has no border
  */
 
 /** Points wider than their spacing close the surface; narrower ones can be told apart. */
@@ -44,7 +45,7 @@ export function meshLayer(source, frame) {
   const geometry = geometryOf(source, frame);
   geometry.setIndex(new BufferAttribute(/** @type {Uint32Array} */ (source.indices), 1));
   if (source.colors) geometry.setAttribute('color', new BufferAttribute(linearColors(source.colors), 3, true));
-  const layer = new Mesh(geometry, meshMaterial({ colored: Boolean(source.colors) }));
+  const layer = new Mesh(geometry, meshMaterial({ colored: Boolean(source.colors), closed: Boolean(source.closed) }));
   layer.frustumCulled = false;
   return layer;
 }

@@ -6,7 +6,7 @@ const SIZE = 256;
 const KEY = { towards: normalize([-0.45, 0.75, 0.55]), color: [1.0, 0.96, 0.9], strength: 0.66 };
 const FILL = { towards: normalize([0.85, 0.05, 0.5]), color: [0.72, 0.82, 1.0], strength: 0.12 };
 const SKY = [0.3, 0.32, 0.35];
-const GROUND = [0.11, 0.095, 0.085];
+const GROUND = [0.15, 0.13, 0.115];
 const RIM = { color: [0.85, 0.93, 1.0], strength: 0.2 };
 const GLOSS = { exponent: 40, strength: 0.1 };
 

@@ -1,13 +1,14 @@
-import { Color, DoubleSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
+import { Color, DoubleSide, FrontSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
 import { studioMatcap } from './matcap.js';
 
 /**
- * The mesh: a matcap, tinted by the theme or by the scan's own colours. Inner sides are darker and warmer,
- * so that a hole or a triangle the wrong way round can be seen.
- * @param {{ colored: boolean }} options
+ * The mesh: a matcap, tinted by the theme or by the scan's own colours. The inner side of an open mesh is darker
+ * and warmer, so that one sees which side is which; that of a closed mesh is never seen.
+ * @param {{ colored: boolean, closed: boolean }} options
  */
-export function meshMaterial({ colored }) {
-  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side: DoubleSide, vertexColors: colored });
+export function meshMaterial({ colored, closed }) {
+  const side = closed ? FrontSide : DoubleSide;
+  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side, vertexColors: colored });
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
       '#include <opaque_fragment>',
@@ -38,6 +39,7 @@ export function pointMaterial({ colored, shaded, diameter }) {
       uniform vec3 tint, background;
       uniform float diameter, pixelsPerUnit, smallest;
       varying vec3 shown;
+      varying float near;
       #ifdef COLORED
         attribute vec3 color;
       #endif
@@ -50,20 +52,23 @@ export function pointMaterial({ colored, shaded, diameter }) {
         #else
           shown = tint;
         #endif
+        near = 1.0;
         #ifdef SHADED
           vec3 n = normalize(normalMatrix * normal);
           float light = 0.5 + 0.5 * dot(n, normalize(vec3(-0.45, 0.75, 0.55)));
           float facing = dot(n, normalize(-eye.xyz));
-          shown = mix(background, shown * (0.5 + 0.65 * light), smoothstep(-0.15, 0.1, facing) * 0.85 + 0.15);
-          if (facing < -0.15) gl_PointSize *= 0.7;
+          near = smoothstep(-0.15, 0.1, facing);
+          shown = mix(mix(shown, background, 0.88), shown * (0.5 + 0.65 * light), near);
+          gl_PointSize *= 0.65 + 0.35 * near;
         #endif
       }`,
     fragmentShader: /* glsl */ `
       varying vec3 shown;
+      varying float near;
       void main() {
         vec2 offset = gl_PointCoord - 0.5;
         if (dot(offset, offset) > 0.25) discard;
-        gl_FragColor = vec4(shown, 1.0);
+        gl_FragColor = vec4(shown, 0.5 + 0.5 * near); // how much the depth pass may darken it
       }`,
   });
 }

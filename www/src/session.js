@@ -12,8 +12,10 @@ import { frameOf } from './frame.js';
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
 
-/** The share of the points that is kept until the person says otherwise. */
-export const DEFAULT_SHARE = /** @type {{ ratio: number }} */ (DEFAULTS.reduce.target).ratio;
+const DEFAULT_SHARE = /** @type {{ ratio: number }} */ (DEFAULTS.reduce.target).ratio;
+/** The least and the most points that the page keeps of its own accord: enough for a shape, few enough to wait for. */
+const ENOUGH = 2_000;
+const AMPLE = 60_000;
 
 /** Codes that say: there is no surface here, but the points can still be reduced. */
 const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
@@ -29,7 +31,9 @@ export class Session extends EventTarget {
   scan = null;
   /** @type {Outcome | null} the last result of the open scan */
   outcome = null;
+  /** The share of the points to keep. */
   share = DEFAULT_SHARE;
+  #shareChosen = false;
   /** @type {AbortController | null} */
   #job = null;
 
@@ -47,13 +51,14 @@ export class Session extends EventTarget {
   /** Keeps another share of the points: stops what runs and starts again. */
   async setShare(/** @type {number} */ share) {
     if (share === this.share) return;
+    this.#shareChosen = true;
     this.share = share;
     if (this.scan) await this.run();
   }
 
   /** How many points will be kept: exactly this many. */
   get keptCount() {
-    return this.scan ? Math.max(1, Math.round(this.scan.count * this.share)) : 0;
+    return this.scan ? keptOf(this.scan.count, this.share) : 0;
   }
 
   /** Reduces and meshes the open scan. */
@@ -96,6 +101,7 @@ export class Session extends EventTarget {
       if (job.signal.aborted) return;
       this.scan = { ...source, cloud, count: cloud.positions.length / 3, frame: frameOf(cloud) };
       this.outcome = null;
+      if (!this.#shareChosen) this.share = startingShare(this.scan.count);
       this.#emit('opened', this.scan);
     } catch (error) {
       this.#end(job, 'failed', { error, title: source.title });
@@ -139,4 +145,15 @@ export class Session extends EventTarget {
   #emit(/** @type {string} */ type, /** @type {unknown} */ detail) {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
+}
+
+/** How many of `count` points a share of them is. */
+export function keptOf(/** @type {number} */ count, /** @type {number} */ share) {
+  return Math.max(1, Math.round(count * share));
+}
+
+/** The share to keep of a new scan, until the person has chosen one. */
+function startingShare(/** @type {number} */ count) {
+  const kept = Math.min(AMPLE, Math.max(ENOUGH, count * DEFAULT_SHARE));
+  return Math.min(1, kept / count);
 }
