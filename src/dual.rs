@@ -12,29 +12,23 @@
 //! lie in the four quadrants around their lattice edge. Seen along the edge the quad is star-shaped, and the diagonal
 //! from its reflex corner, if it has one, gives two triangles that run the right way round.
 
+use crate::creases::{self, Candidate, Crossing, Moved};
 use crate::error::Result;
 use crate::extract::Implicit;
 use crate::lattice::{Lattice, Place, corner};
-use crate::linalg::sym_eigen;
 use crate::loops::{LoopTable, Loops, ambiguous_faces, edge_corners, face_corners};
 use crate::par;
 use glam::{DVec3, IVec3, Vec3};
 
 /// A vertex keeps this share of the edge length away from its cell's faces: more than `f32` rounds at the finest
 /// resolution (1e-4), less than any error that matters.
-const MARGIN: f64 = 1e-3;
+pub(crate) const MARGIN: f64 = 1e-3;
 /// Newton steps towards the zero set; a step that moves less than [`SETTLED`] edges is the last.
 const STEPS: usize = 3;
 /// See [`STEPS`].
 const SETTLED: f64 = 0.05;
 /// Longest Newton step in edges.
 const LONGEST_STEP: f64 = 0.5;
-/// Neighbouring vertices whose normals differ by more (cosine of 25°) may lie on a crease.
-const CREASE_COSINE: f32 = 0.906;
-/// A direction in which the planes of a loop determine the vertex: its eigenvalue over the largest. 0.1 is met by two
-/// planes at 35° to each other (tan²(17.5°)); noise in the gradients stays under it. (T. Ju et al., "Dual contouring of
-/// Hermite data", 2002, section 2.3, cut singular values off at 0.1.)
-const RANK_SHARE: f64 = 0.1;
 /// Bricks between two progress calls.
 const BRICKS_PER_SLICE: usize = 64;
 /// Quads that one index of a parallel map takes.
@@ -108,7 +102,7 @@ pub(crate) fn build<F: Implicit>(
     );
     let mut quads: Vec<Quad> = quads.into_iter().flatten().collect();
     if sharp {
-        let on_crease = mark_creases(&vertices, &quads);
+        let on_crease = creases::mark(&vertices, &quads);
         let mut done = 0;
         for slice in cells.order.chunks(BRICKS_PER_SLICE) {
             let moved = par::map(
@@ -142,11 +136,12 @@ pub(crate) fn build<F: Implicit>(
 }
 
 /// Positions and what the field has there; the memory of one worker.
-struct Probe<'a, F: Implicit> {
+pub(crate) struct Probe<'a, F: Implicit> {
     field: &'a F,
     scratch: F::Scratch,
-    at: Vec<DVec3>,
-    found: Vec<Option<(f64, DVec3)>>,
+    pub(crate) at: Vec<DVec3>,
+    /// Value and gradient; `None` where there is none that can be divided by.
+    pub(crate) found: Vec<Option<(f64, DVec3)>>,
 }
 
 impl<'a, F: Implicit> Probe<'a, F> {
@@ -159,13 +154,18 @@ impl<'a, F: Implicit> Probe<'a, F> {
         }
     }
 
-    /// Values and gradients at the positions.
-    fn gradients(&mut self) -> &[Option<(f64, DVec3)>] {
+    /// Fills `found` for the positions `at`.
+    pub(crate) fn evaluate(&mut self) {
         self.found.clear();
         self.found.resize(self.at.len(), None);
         self.field
             .gradients(&self.at, &mut self.found, &mut self.scratch);
-        &self.found
+        for found in &mut self.found {
+            *found = found.filter(|(value, gradient)| {
+                let square = gradient.length_squared();
+                value.is_finite() && square.is_finite() && square > 1e-20
+            });
+        }
     }
 }
 
@@ -297,11 +297,11 @@ impl<'a> Cells<'a> {
             probe
                 .at
                 .extend(moving.iter().map(|&v| inner[v].1 + edge * inner[v].0));
-            let found = probe.gradients();
+            probe.evaluate();
             let mut k = 0;
             moving.retain(|&v| {
                 k += 1;
-                let Some((value, gradient)) = usable(found[k - 1]) else {
+                let Some((value, gradient)) = probe.found[k - 1] else {
                     return false;
                 };
                 vertices[v].normal = gradient.normalize().as_vec3();
@@ -349,39 +349,32 @@ impl<'a> Cells<'a> {
         quads
     }
 
-    /// New places and normals for the marked vertices of a brick whose loops see two or three planes.
-    fn sharpen<F: Implicit>(
-        &self,
-        b: u32,
-        marked: &[bool],
-        probe: &mut Probe<F>,
-    ) -> Vec<(u32, Vec3, Vec3)> {
+    /// The marked vertices of a brick that lie on creases, moved there.
+    fn sharpen<F: Implicit>(&self, b: u32, marked: &[bool], probe: &mut Probe<F>) -> Vec<Moved> {
         let edge = self.lattice.edge;
-        let mut loops_here = Vec::new();
-        probe.at.clear();
-        for (place, cell) in self.of_brick(b) {
+        let (mut candidates, mut crossings) = (Vec::new(), Vec::new());
+        for (place, cell) in self.of_brick(b).filter(|(_, cell)| !cell.filled) {
             let loops = self.loops(cell);
-            for l in (0..loops.count())
-                .filter(|&l| marked[cell.first_vertex as usize + l] && !cell.filled)
-            {
-                let (start, corner) = (probe.at.len(), self.lattice.position(place));
+            for l in (0..loops.count()).filter(|l| marked[cell.first_vertex as usize + l]) {
+                let (start, lowest) = (crossings.len(), self.lattice.position(place));
                 let values = self.lattice.corners(place);
-                probe
-                    .at
-                    .extend(loops.edges(l).map(|e| corner + edge * crossing(e, &values)));
-                loops_here.push((cell.first_vertex + l as u32, corner, start..probe.at.len()));
+                crossings.extend(loops.edges(l).map(|e| {
+                    let ends = edge_corners(e);
+                    let low = lowest + edge * corner(ends[0]).as_dvec3();
+                    Crossing::new(
+                        low,
+                        edge * DVec3::AXES[e / 4],
+                        ends.map(|c| values[c] as f64),
+                    )
+                }));
+                candidates.push(Candidate {
+                    vertex: cell.first_vertex + l as u32,
+                    corner: lowest,
+                    crossings: start..crossings.len(),
+                });
             }
         }
-        probe.gradients();
-        let solve = |(v, corner, range): (u32, DVec3, std::ops::Range<usize>)| {
-            let planes: Vec<(DVec3, DVec3)> = range
-                .filter_map(|k| tangent_plane(probe.at[k], probe.found[k]))
-                .collect();
-            let (point, normal) = meet_planes(&planes)?;
-            let inside = clamp((point - corner) / edge);
-            Some((v, (corner + edge * inside).as_vec3(), normal.as_vec3()))
-        };
-        loops_here.into_iter().filter_map(solve).collect()
+        creases::sharpen(&candidates, &mut crossings, edge, probe)
     }
 }
 
@@ -417,74 +410,8 @@ fn crossing(edge: usize, values: &[f32; 8]) -> DVec3 {
     at
 }
 
-fn clamp(inside: DVec3) -> DVec3 {
+pub(crate) fn clamp(inside: DVec3) -> DVec3 {
     inside.clamp(DVec3::splat(MARGIN), DVec3::splat(1.0 - MARGIN))
-}
-
-/// A value with a gradient that can be divided by.
-fn usable(found: Option<(f64, DVec3)>) -> Option<(f64, DVec3)> {
-    found.filter(|(value, gradient)| {
-        let square = gradient.length_squared();
-        value.is_finite() && square.is_finite() && square > 1e-20
-    })
-}
-
-/// The nearest point of the zero set as far as value and gradient at `at` tell, and the unit normal there.
-fn tangent_plane(at: DVec3, found: Option<(f64, DVec3)>) -> Option<(DVec3, DVec3)> {
-    let (value, gradient) = usable(found)?;
-    Some((
-        at - gradient * (value / gradient.length_squared()),
-        gradient.normalize(),
-    ))
-}
-
-/// The point with the least sum of squared distances to the planes (point, unit normal), nearest to their points'
-/// mean, and the mean normal; `None` where the planes are all about the same.
-fn meet_planes(planes: &[(DVec3, DVec3)]) -> Option<(DVec3, DVec3)> {
-    let mean = planes.iter().map(|p| p.0).sum::<DVec3>() / planes.len().max(1) as f64;
-    let mut matrix = [0.0; 6];
-    let (mut right, mut normal) = (DVec3::ZERO, DVec3::ZERO);
-    for &(point, n) in planes {
-        let products = [
-            n.x * n.x,
-            n.x * n.y,
-            n.x * n.z,
-            n.y * n.y,
-            n.y * n.z,
-            n.z * n.z,
-        ];
-        matrix.iter_mut().zip(products).for_each(|(m, p)| *m += p);
-        right += n * n.dot(point - mean);
-        normal += n;
-    }
-    let eigen = sym_eigen(&matrix);
-    let determined = |k: usize| eigen.values[k] > RANK_SHARE * eigen.values[2];
-    if planes.len() < 3 || !determined(1) {
-        return None;
-    }
-    let shift = (0..3)
-        .filter(|&k| determined(k))
-        .map(|k| eigen.vectors[k] * (eigen.vectors[k].dot(right) / eigen.values[k]));
-    Some((mean + shift.sum::<DVec3>(), normal.normalize_or_zero()))
-}
-
-/// Vertices whose normal differs from that of a neighbour.
-fn mark_creases(vertices: &[Vertex], quads: &[Quad]) -> Vec<bool> {
-    let mut marked = vec![false; vertices.len()];
-    for quad in quads {
-        for k in 0..4 {
-            let (p, q) = (
-                quad.vertices[k] as usize,
-                quad.vertices[(k + 1) % 4] as usize,
-            );
-            let (n, m) = (vertices[p].normal, vertices[q].normal);
-            if n != Vec3::ZERO && m != Vec3::ZERO && n.dot(m) < CREASE_COSINE {
-                marked[p] = true;
-                marked[q] = true;
-            }
-        }
-    }
-    marked
 }
 
 /// Turns the quad so that its cut is the better diagonal: both triangles run the right way round along the lattice

@@ -59,6 +59,7 @@ mod band;
 mod lattice;
 mod loops;
 mod dual;
+mod creases;
 pub mod attach;
 pub mod report;
 pub mod distance;

@@ -1,4 +1,4 @@
-//! Extraction on functions whose zero set is known.
+//! Extraction on functions whose zero set is known, and on some that have none worth the name.
 
 use glam::{DVec3, Vec3};
 use pointweave::extract::{ExtractParams, Extracted, Implicit, extract};
@@ -6,15 +6,22 @@ use pointweave::params::Boundary;
 use pointweave::progress::Silent;
 use pointweave::report::{Topology, area, topology, volume};
 use pointweave::rng::Rng;
+use pointweave::{Error, Stage};
 use std::f64::consts::PI;
 
-/// A function with a region in which it counts as fitted.
-struct Analytic<V, C> {
+/// A function, the region in which it counts as fitted, and its extension.
+struct Analytic<V, C, G> {
     value: V,
     covered: C,
+    global: G,
 }
 
-impl<V: Fn(DVec3) -> f64 + Sync, C: Fn(DVec3) -> bool + Sync> Implicit for Analytic<V, C> {
+impl<V, C, G> Implicit for Analytic<V, C, G>
+where
+    V: Fn(DVec3) -> f64 + Sync,
+    C: Fn(DVec3) -> bool + Sync,
+    G: Fn(DVec3) -> f64 + Sync,
+{
     type Scratch = ();
 
     fn scratch(&self) {}
@@ -24,145 +31,560 @@ impl<V: Fn(DVec3) -> f64 + Sync, C: Fn(DVec3) -> bool + Sync> Implicit for Analy
     }
 
     fn global(&self, at: DVec3, (): &mut ()) -> f64 {
-        (self.value)(at)
+        (self.global)(at)
     }
 
     fn gradient(&self, at: DVec3, (): &mut ()) -> Option<(f64, DVec3)> {
-        let e = 1e-6;
-        let slope = |d: DVec3| ((self.value)(at + e * d) - (self.value)(at - e * d)) / (2.0 * e);
-        (self.covered)(at).then(|| {
-            (
-                (self.value)(at),
-                DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)),
-            )
-        })
+        (self.covered)(at).then(|| ((self.value)(at), gradient(&self.value, at)))
     }
 }
 
-/// Points on the zero set: random ones of the cube [-0.5, 0.5]³ led there by Newton steps.
-fn sample(
-    value: &(impl Fn(DVec3) -> f64 + Sync),
-    covered: &impl Fn(DVec3) -> bool,
-    n: usize,
-) -> Vec<Vec3> {
-    let mut rng = Rng::new(7);
-    let mut points = Vec::new();
-    let field = Analytic {
-        value,
-        covered: |_| true,
-    };
-    for _ in 0..20 * n {
-        let mut x = DVec3::new(rng.uniform(), rng.uniform(), rng.uniform()) - 0.5;
-        for _ in 0..5 {
-            if let Some((v, g)) = field.gradient(x, &mut ()) {
-                x -= g * (v / g.length_squared().max(1e-9));
-            }
-        }
-        if value(x).abs() < 1e-6 && covered(x) && x.abs().max_element() < 0.5 && points.len() < n {
-            points.push(x.as_vec3());
-        }
-    }
-    points
+fn gradient(value: &impl Fn(DVec3) -> f64, at: DVec3) -> DVec3 {
+    let e = 1e-6;
+    let slope = |d: DVec3| (value(at + e * d) - value(at - e * d)) / (2.0 * e);
+    DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z))
 }
+
+fn random(rng: &mut Rng) -> DVec3 {
+    DVec3::new(rng.uniform(), rng.uniform(), rng.uniform()) - 0.5
+}
+
+/// About `n` points of the zero set within the cube [-0.5, 0.5]³: random ones led there by Newton steps.
+fn sample(value: &impl Fn(DVec3) -> f64, n: usize) -> Vec<Vec3> {
+    let mut rng = Rng::new(7);
+    let project = |_| {
+        let mut x = random(&mut rng);
+        for _ in 0..6 {
+            let g = gradient(value, x);
+            x -= g * (value(x) / g.length_squared().max(1e-9));
+        }
+        x
+    };
+    let points = (0..n)
+        .map(project)
+        .filter(|&x| value(x).abs() < 1e-5 && x.abs().max_element() < 0.5);
+    points.map(|x| x.as_vec3()).collect()
+}
+
+const SMOOTH: ExtractParams = ExtractParams {
+    resolution: 0.01,
+    boundary: Boundary::Auto,
+    sharp: false,
+};
+const SHARP: ExtractParams = ExtractParams {
+    sharp: true,
+    ..SMOOTH
+};
 
 struct Run {
     out: Extracted,
     topology: Topology,
 }
 
-fn run_on(
-    points: &[Vec3],
-    value: impl Fn(DVec3) -> f64 + Sync,
-    covered: impl Fn(DVec3) -> bool + Sync,
-    params: ExtractParams,
-) -> Run {
-    let reach = vec![0.05; points.len()];
-    let field = Analytic { value, covered };
-    let out = extract(&field, points, &reach, &params, &mut Silent).expect("not cancelled");
-    let topology = topology(&out.mesh.triangles, out.mesh.vertices.len());
+/// Extracts, and checks what holds for every field.
+fn check(field: &impl Implicit, points: &[Vec3], params: ExtractParams) -> Run {
+    let out = extract(
+        field,
+        points,
+        &vec![0.05; points.len()],
+        &params,
+        &mut Silent,
+    )
+    .expect("not cancelled");
+    let mesh = &out.mesh;
+    let topology = topology(&mesh.triangles, mesh.vertices.len());
     assert!(topology.is_manifold(), "{topology:?}");
+    let mut used = vec![false; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
+        assert!(
+            (b - a).cross(c - a).length() > 0.0,
+            "degenerate: {a} {b} {c}"
+        );
+        triangle.iter().for_each(|&v| used[v as usize] = true);
+    }
+    assert!(used.iter().all(|&u| u), "unused vertex");
+    assert_eq!(mesh.normals.len(), mesh.vertices.len());
+    assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+    if params.boundary == Boundary::Closed {
+        assert_eq!(topology.boundary_edges, 0);
+    }
     Run { out, topology }
 }
 
-fn run(value: impl Fn(DVec3) -> f64 + Sync, params: ExtractParams) -> Run {
-    let points = sample(&value, &|_| true, 4000);
-    run_on(&points, value, |_| true, params)
-}
-
-const FINE: ExtractParams = ExtractParams {
-    resolution: 0.01,
-    boundary: Boundary::Auto,
-    sharp: false,
-};
-
-/// Mean and maximum of |value| over vertices.
-fn errors(run: &Run, value: impl Fn(DVec3) -> f64) -> (f64, f64) {
-    let d: Vec<f64> = run
-        .out
-        .mesh
-        .vertices
-        .iter()
-        .map(|v| value(v.as_dvec3()).abs())
-        .collect();
-    (
-        d.iter().sum::<f64>() / d.len() as f64,
-        d.iter().copied().fold(0.0, f64::max),
+/// A function that is fitted everywhere.
+fn check_everywhere(value: impl Fn(DVec3) -> f64 + Sync, params: ExtractParams) -> Run {
+    let points = sample(&value, 8000);
+    check(
+        &Analytic {
+            value: &value,
+            covered: |_| true,
+            global: &value,
+        },
+        &points,
+        params,
     )
 }
 
+impl Run {
+    fn volume(&self) -> f64 {
+        volume(&self.out.mesh.vertices, &self.out.mesh.triangles)
+    }
+
+    fn area(&self) -> f64 {
+        area(&self.out.mesh.vertices, &self.out.mesh.triangles)
+    }
+
+    /// The largest of `distance` over vertices, and over the triangles' centres.
+    fn errors(&self, distance: impl Fn(DVec3) -> f64) -> (f64, f64) {
+        let mesh = &self.out.mesh;
+        let at = |v: u32| mesh.vertices[v as usize].as_dvec3();
+        let centres = mesh
+            .triangles
+            .iter()
+            .map(|t| t.iter().map(|&v| at(v)).sum::<DVec3>() / 3.0);
+        let vertices = (0..mesh.vertices.len() as u32).map(at);
+        let largest = |points: &mut dyn Iterator<Item = DVec3>| {
+            points.map(|p| distance(p).abs()).fold(0.0, f64::max)
+        };
+        (
+            largest(&mut vertices.into_iter()),
+            largest(&mut centres.into_iter()),
+        )
+    }
+}
+
+fn sphere(x: DVec3) -> f64 {
+    x.length() - 0.3
+}
+
+fn torus(x: DVec3) -> f64 {
+    DVec3::new(DVec3::new(x.x, x.y, 0.0).length() - 0.3, x.z, 0.0).length() - 0.1
+}
+
+/// Turned so that its faces, edges and corners lie across the lattice.
+fn cube(x: DVec3) -> f64 {
+    let (u, v) = (
+        DVec3::new(2.0, 1.0, 0.5).normalize(),
+        DVec3::new(-1.0, 2.0, 0.0).normalize(),
+    );
+    let q = DVec3::new(u.dot(x), v.dot(x), u.cross(v).dot(x)).abs() - 0.2;
+    q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
+}
+
 #[test]
-fn sphere() {
-    let value = |x: DVec3| x.length() - 0.3;
-    let r = run(value, FINE);
-    println!("{:?} {:?}", r.topology, errors(&r, value));
+fn sphere_is_exact_to_second_order() {
+    let r = check_everywhere(sphere, SMOOTH);
     assert_eq!(
         (
             r.topology.components,
             r.topology.boundary_edges,
-            r.topology.genus.clone()
+            &r.topology.genus[..]
         ),
-        (1, 0, vec![0])
+        (1, 0, &[0][..])
     );
-    let (v, a) = (
-        volume(&r.out.mesh.vertices, &r.out.mesh.triangles),
-        area(&r.out.mesh.vertices, &r.out.mesh.triangles),
+    let (at_vertices, at_centres) = r.errors(sphere);
+    // A chord of length h leaves the sphere by h²/8r; cells have diagonals of √3 h.
+    assert!(
+        at_vertices < 2e-5 && at_centres < 3.0 * 1e-4 / (8.0 * 0.3),
+        "{at_vertices} {at_centres}"
     );
-    println!(
-        "{} {}",
-        v / (4.0 / 3.0 * PI * 0.027) - 1.0,
-        a / (4.0 * PI * 0.09) - 1.0
+    assert!((r.volume() / (4.0 / 3.0 * PI * 0.027) - 1.0).abs() < 1e-3);
+    assert!((r.area() / (4.0 * PI * 0.09) - 1.0).abs() < 1e-3);
+    for (vertex, normal) in r.out.mesh.vertices.iter().zip(&r.out.mesh.normals) {
+        assert!(vertex.normalize().dot(*normal) > 0.999);
+    }
+    for t in &r.out.mesh.triangles {
+        let [a, b, c] = t.map(|v| r.out.mesh.vertices[v as usize]);
+        assert!((b - a).cross(c - a).dot(a) > 0.0, "flipped");
+    }
+    assert_eq!((r.out.filled, r.out.closed, r.out.open), (0.0, 0, 0));
+    // The option to keep creases finds none.
+    assert_eq!(check_everywhere(sphere, SHARP).out, r.out);
+}
+
+#[test]
+fn torus_has_its_hole() {
+    let r = check_everywhere(torus, SMOOTH);
+    assert_eq!(
+        (
+            r.topology.components,
+            r.topology.boundary_edges,
+            &r.topology.genus[..]
+        ),
+        (1, 0, &[1][..])
+    );
+    assert!((r.volume() / (2.0 * PI * PI * 0.3 * 0.01) - 1.0).abs() < 2e-3);
+    assert!((r.area() / (4.0 * PI * PI * 0.03) - 1.0).abs() < 2e-3);
+    assert!(r.errors(torus).0 < 1e-4);
+}
+
+#[test]
+fn sharp_keeps_the_edges_and_corners_of_a_cube() {
+    let r = check_everywhere(cube, SHARP);
+    assert_eq!(
+        (
+            r.topology.components,
+            r.topology.boundary_edges,
+            &r.topology.genus[..]
+        ),
+        (1, 0, &[0][..])
+    );
+    // Where an edge passes just beside the cell whose loop sees both faces, its vertex stays in the cell.
+    let (at_vertices, _) = r.errors(cube);
+    assert!(at_vertices < 0.15 * SHARP.resolution, "{at_vertices}");
+    let off = |v: &&Vec3| cube(v.as_dvec3()).abs() > 1e-5;
+    let share =
+        r.out.mesh.vertices.iter().filter(off).count() as f64 / r.out.mesh.vertices.len() as f64;
+    assert!(share < 2e-3, "{share}");
+    assert!((r.volume() / 0.064 - 1.0).abs() < 1e-4, "{}", r.volume());
+    assert!((r.area() / 0.96 - 1.0).abs() < 5e-4, "{}", r.area());
+    let corner = r
+        .out
+        .mesh
+        .vertices
+        .iter()
+        .map(|v| v.length())
+        .fold(0.0, f32::max);
+    assert!((corner as f64 - 0.2 * 3f64.sqrt()).abs() < 1e-4, "{corner}");
+    // Without it they are cut off by less than a cell.
+    let smooth = check_everywhere(cube, SMOOTH);
+    let loss = smooth.volume() / 0.064 - 1.0;
+    assert!(loss < -1e-4 && loss > -1e-2, "{loss}");
+}
+
+#[test]
+fn two_spheres_near_each_other_stay_two() {
+    let at = |x: DVec3| {
+        (x - DVec3::X * 0.2)
+            .length()
+            .min((x + DVec3::X * 0.2).length())
+            - 0.19
+    };
+    let r = check_everywhere(at, SMOOTH);
+    assert_eq!(
+        (
+            r.topology.components,
+            r.topology.boundary_edges,
+            &r.topology.genus[..]
+        ),
+        (2, 0, &[0, 0][..])
+    );
+    assert!((r.volume() / (8.0 / 3.0 * PI * 0.19f64.powi(3)) - 1.0).abs() < 2e-3);
+}
+
+#[test]
+fn touching_spheres_are_manifold() {
+    let at = |x: DVec3| {
+        (x - DVec3::X * 0.2)
+            .length()
+            .min((x + DVec3::X * 0.2).length())
+            - 0.2
+    };
+    check_everywhere(at, SMOOTH);
+}
+
+/// Plates of 2 to 0.5 cells: whole where a lattice vertex is always inside, in pieces below that, and manifold anyhow.
+#[test]
+fn thin_plates() {
+    let normal = DVec3::new(1.0, 0.7, 0.4).normalize();
+    for cells in [2.0, 1.0, 0.5] {
+        let thickness = cells * SMOOTH.resolution;
+        let plate = |x: DVec3| {
+            let across = normal.dot(x);
+            let along = (x - across * normal).length() - 0.3;
+            (across.abs() - thickness / 2.0).max(along)
+        };
+        for boundary in [Boundary::Auto, Boundary::Closed] {
+            let r = check_everywhere(plate, ExtractParams { boundary, ..SHARP });
+            assert_eq!(r.topology.boundary_edges, 0);
+            let exact = PI * 0.09 * thickness;
+            let whole = (r.volume() / exact - 1.0).abs() < 0.05;
+            assert!(whole || cells < 1.0, "{cells}: {} of {exact}", r.volume());
+        }
+    }
+}
+
+#[test]
+fn gyroid_has_its_tunnels() {
+    let k = 14.0;
+    let gyroid = |x: DVec3| {
+        let p = x * k;
+        let s = libm::sin(p.x) * libm::cos(p.y)
+            + libm::sin(p.y) * libm::cos(p.z)
+            + libm::sin(p.z) * libm::cos(p.x);
+        (s / k).max(x.length() - 0.4)
+    };
+    let r = check_everywhere(gyroid, SHARP);
+    assert_eq!(r.topology.boundary_edges, 0);
+    assert!(r.topology.genus[0] >= 10, "{:?}", r.topology.genus);
+    let coarse = check_everywhere(
+        gyroid,
+        ExtractParams {
+            resolution: 0.0125,
+            ..SHARP
+        },
+    );
+    assert_eq!(r.topology.genus[0], coarse.topology.genus[0]);
+}
+
+/// White noise at the lattice's own scale: every ambiguous configuration, many at once.
+#[test]
+fn noise_is_manifold() {
+    for seed in 0..3u64 {
+        let h = 1.0 / 60.0;
+        let noise = |x: DVec3| {
+            let p = (x / h).round().as_i64vec3() + 1000;
+            let mut rng = Rng::new(seed + ((p.x as u64) << 40 | (p.y as u64) << 20 | p.z as u64));
+            rng.next_u64();
+            h * (rng.uniform() - 0.5)
+        };
+        let mut rng = Rng::new(seed);
+        let points: Vec<Vec3> = (0..2000)
+            .map(|_| (0.4 * random(&mut rng)).as_vec3())
+            .collect();
+        // Patches of it only: boundaries and bow ties.
+        let patches =
+            |x: DVec3| libm::sin(40.0 * x.x) + libm::sin(50.0 * x.y) + libm::sin(60.0 * x.z) > -0.3;
+        for boundary in [Boundary::Open, Boundary::Auto, Boundary::Closed] {
+            for sharp in [false, true] {
+                let params = ExtractParams {
+                    resolution: h,
+                    boundary,
+                    sharp,
+                };
+                let all = check(
+                    &Analytic {
+                        value: noise,
+                        covered: |_| true,
+                        global: noise,
+                    },
+                    &points,
+                    params,
+                );
+                assert!(all.out.mesh.triangles.len() > 10_000);
+                let some = check(
+                    &Analytic {
+                        value: noise,
+                        covered: patches,
+                        global: noise,
+                    },
+                    &points,
+                    params,
+                );
+                assert!(some.out.mesh.triangles.len() > 1_000);
+            }
+        }
+    }
+}
+
+/// A ball of which only the part above `z` was measured.
+fn cut_ball(z: f64, boundary: Boundary) -> Run {
+    let points: Vec<Vec3> = sample(&sphere, 8000)
+        .into_iter()
+        .filter(|p| p.z as f64 > z)
+        .collect();
+    // The zero set of the winding number of such a cap closes it with a flat disk.
+    let covered = move |x: DVec3| x.z > z - 0.02 && sphere(x).abs() < 0.05;
+    let closed = move |x: DVec3| sphere(x).max(z - 0.02 - x.z);
+    check(
+        &Analytic {
+            value: sphere,
+            covered,
+            global: closed,
+        },
+        &points,
+        ExtractParams { boundary, ..SMOOTH },
+    )
+}
+
+#[test]
+fn an_open_surface_ends_where_the_points_end() {
+    let r = cut_ball(0.0, Boundary::Open);
+    assert_eq!(
+        (r.topology.components, &r.topology.genus[..]),
+        (1, &[0][..])
+    );
+    assert!(r.topology.boundary_edges > 0);
+    assert!(r.out.mesh.vertices.iter().all(|v| v.z > -0.03) && r.out.filled == 0.0);
+    // One rim: as long as the circle, in steps of at most a cell's diagonal and not much less than half an edge.
+    assert!(
+        (100..500).contains(&r.topology.boundary_edges),
+        "{}",
+        r.topology.boundary_edges
+    );
+    assert!((r.area() / (2.0 * PI * 0.09) - 1.0).abs() < 0.1);
+}
+
+#[test]
+fn a_closed_surface_has_no_boundary() {
+    let r = cut_ball(0.0, Boundary::Closed);
+    assert_eq!(
+        (
+            r.topology.components,
+            r.topology.boundary_edges,
+            r.out.closed,
+            r.out.open
+        ),
+        (1, 0, 1, 0)
+    );
+    assert!((r.out.filled - 1.0 / 3.0).abs() < 0.03, "{}", r.out.filled);
+    assert!((r.volume() / (2.0 / 3.0 * PI * 0.027) - 1.0).abs() < 0.15);
+}
+
+#[test]
+fn auto_closes_small_holes_and_leaves_large_ones() {
+    let small = cut_ball(-0.2, Boundary::Auto);
+    assert_eq!(
+        (
+            small.topology.boundary_edges,
+            small.out.closed,
+            small.out.open
+        ),
+        (0, 1, 0)
+    );
+    assert!(
+        small.out.filled > 0.05 && small.out.filled < 0.2,
+        "{}",
+        small.out.filled
+    );
+    let large = cut_ball(0.15, Boundary::Auto);
+    assert_eq!(
+        (large.out.closed, large.out.open, large.out.filled),
+        (0, 1, 0.0)
+    );
+    assert_eq!(large.out.mesh, cut_ball(0.15, Boundary::Open).out.mesh);
+}
+
+/// `Auto` decides for each component: of a whole ball and a bowl only the bowl stays open.
+#[test]
+fn auto_decides_for_each_component() {
+    let (left, right) = (DVec3::X * 0.25, DVec3::X * -0.25);
+    let balls = move |x: DVec3| (x - left).length().min((x - right).length()) - 0.2;
+    let covered = move |x: DVec3| balls(x).abs() < 0.05 && (x.x > 0.0 || x.z > 0.05);
+    let closed = move |x: DVec3| {
+        if x.x > 0.0 {
+            balls(x)
+        } else {
+            balls(x).max(0.05 - x.z)
+        }
+    };
+    let points: Vec<Vec3> = sample(&balls, 8000)
+        .into_iter()
+        .filter(|p| p.x > 0.0 || p.z > 0.05)
+        .collect();
+    let r = check(
+        &Analytic {
+            value: balls,
+            covered,
+            global: closed,
+        },
+        &points,
+        SMOOTH,
+    );
+    assert_eq!((r.topology.components, r.out.open), (2, 1));
+    assert!(r.topology.boundary_edges > 0);
+    let whole = 4.0 * PI * 0.04;
+    assert!(r.area() > whole + 0.3 * whole && r.area() < whole + 0.5 * whole);
+}
+
+/// A field that calls everything inside still gives a closed surface: the hull of the lattice.
+#[test]
+fn closing_is_bounded_by_the_lattice() {
+    let value = |x: DVec3| x.z;
+    let points: Vec<Vec3> = (0..400)
+        .map(|i| Vec3::new((i % 20) as f32 * 0.01, (i / 20) as f32 * 0.01, 0.0))
+        .collect();
+    let covered = |x: DVec3| x.x.abs() < 0.25 && x.y.abs() < 0.25 && x.z.abs() < 0.03;
+    let field = Analytic {
+        value,
+        covered,
+        global: |_| -1.0,
+    };
+    let r = check(
+        &field,
+        &points,
+        ExtractParams {
+            boundary: Boundary::Closed,
+            ..SMOOTH
+        },
+    );
+    assert_eq!(r.topology.boundary_edges, 0);
+    assert!(r.volume() > 0.0);
+}
+
+#[test]
+fn points_off_the_surface_and_their_order_do_not_matter() {
+    let points = sample(&sphere, 8000);
+    let field = Analytic {
+        value: sphere,
+        covered: |_| true,
+        global: sphere,
+    };
+    let whole = check(&field, &points, SMOOTH);
+    let reversed: Vec<Vec3> = points.iter().rev().copied().collect();
+    assert_eq!(check(&field, &reversed, SMOOTH).out, whole.out);
+    // One point in a hundred, off by a cell: the walk along the surface finds the rest.
+    let mut rng = Rng::new(3);
+    let off = |&p: &Vec3| p + (0.01 * random(&mut rng)).as_vec3();
+    let few: Vec<Vec3> = points.iter().step_by(100).map(off).collect();
+    let sparse = check(&field, &few, SMOOTH);
+    assert_eq!(sparse.topology, whole.topology);
+    assert!((sparse.area() / whole.area() - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn no_points_and_no_surface_make_an_empty_mesh() {
+    let field = Analytic {
+        value: |_| 1.0,
+        covered: |_| true,
+        global: |_| 1.0,
+    };
+    assert_eq!(check(&field, &[], SMOOTH).out, Extracted::default());
+    assert_eq!(
+        check(&field, &[Vec3::ZERO], SMOOTH).out,
+        Extracted::default()
+    );
+    let blind = Analytic {
+        value: |_| f64::NAN,
+        covered: |_| true,
+        global: |_| 1.0,
+    };
+    assert_eq!(
+        check(&blind, &[Vec3::ZERO], SMOOTH).out,
+        Extracted::default()
     );
 }
 
 #[test]
-fn noise() {
-    for seed in 0..4 {
-        let value = |x: DVec3| {
-            let p = (x * 60.0).round().as_ivec3();
-            let mut rng = Rng::new(
-                seed * 1000 + ((p.x * 73856093) ^ (p.y * 19349663) ^ (p.z * 83492791)) as u64,
-            );
-            rng.next_u64();
-            rng.uniform() - 0.5
+fn progress_rises_to_one_and_can_cancel() {
+    let points = sample(&sphere, 8000);
+    let field = Analytic {
+        value: sphere,
+        covered: |_| true,
+        global: sphere,
+    };
+    let reach = vec![0.05; points.len()];
+    let mut heard = vec![0.0];
+    let mut listen = |stage: Stage, fraction: f32| {
+        assert!(stage == Stage::Extract && fraction >= heard[heard.len() - 1] && fraction <= 1.0);
+        heard.push(fraction);
+        true
+    };
+    assert!(extract(&field, &points, &reach, &SMOOTH, &mut listen).is_ok());
+    assert!(
+        heard.len() > 5 && heard[heard.len() - 1] == 1.0,
+        "{heard:?}"
+    );
+    for stop_at in 1..heard.len() {
+        let mut calls = 0;
+        let mut stop = |_: Stage, _: f32| {
+            calls += 1;
+            calls < stop_at
         };
-        let mut rng = Rng::new(5);
-        let points: Vec<Vec3> = (0..3000)
-            .map(|_| {
-                (DVec3::new(rng.uniform(), rng.uniform(), rng.uniform()) * 0.4 - 0.2).as_vec3()
-            })
-            .collect();
-        let params = ExtractParams {
-            resolution: 1.0 / 60.0,
-            boundary: Boundary::Closed,
-            sharp: false,
-        };
-        let r = run_on(&points, value, |_| true, params);
-        println!(
-            "{:?}",
-            Topology {
-                genus: vec![],
-                ..r.topology
-            }
+        assert_eq!(
+            extract(&field, &points, &reach, &SMOOTH, &mut stop),
+            Err(Error::Cancelled)
         );
     }
 }
