@@ -1,0 +1,24 @@
+//! The pool for tests of the wasm-threads build, as `pkg/hosts.js` makes it for the package.
+
+use js_sys::JsString;
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// The module that wasm-bindgen wrote for these tests.
+    #[wasm_bindgen(thread_local_v2, js_namespace = ["import", "meta"], js_name = url)]
+    static GLUE: JsString;
+}
+
+#[wasm_bindgen(module = "/tests/threads/workers.js")]
+extern "C" {
+    #[wasm_bindgen(js_name = startWorkers)]
+    async fn start_workers(glue: JsString, module: JsValue, memory: JsValue, threads: usize);
+}
+
+/// Starts a pool of `threads`, once a test binary.
+pub async fn start(threads: usize) {
+    let glue = GLUE.with(Clone::clone);
+    start_workers(glue, wasm_bindgen::module(), wasm_bindgen::memory(), threads).await;
+    pointweave::pool::build(threads).expect("one pool a test binary");
+}
