@@ -20,7 +20,12 @@ async fn workers_share_the_work_and_results_keep_their_order() {
         (i * i, rayon::current_thread_index())
     };
     let results = par::map(2_000, || (), slow_square);
-    assert!(results.iter().enumerate().all(|(i, (square, _))| *square == i * i));
+    assert!(
+        results
+            .iter()
+            .enumerate()
+            .all(|(i, (square, _))| *square == i * i)
+    );
 
     let workers: BTreeSet<_> = results.iter().map(|(_, worker)| *worker).collect();
     assert_eq!(workers, BTreeSet::from([Some(0), Some(1)]));

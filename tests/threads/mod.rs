@@ -19,6 +19,12 @@ extern "C" {
 /// Starts a pool of `threads`, once a test binary.
 pub async fn start(threads: usize) {
     let glue = GLUE.with(Clone::clone);
-    start_workers(glue, wasm_bindgen::module(), wasm_bindgen::memory(), threads).await;
+    start_workers(
+        glue,
+        wasm_bindgen::module(),
+        wasm_bindgen::memory(),
+        threads,
+    )
+    .await;
     pointweave::pool::build(threads).expect("one pool a test binary");
 }

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: every check of the project, each named, timed and summed up at the end.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -68,8 +68,10 @@ pub fn test(checks: &[Check]) -> Result<()> {
             Check::Native => log.step("native", native),
             Check::Wasm => wasm(&mut log),
             Check::Types => log.step("types", types),
-            Check::Pkg => log.step("pkg", || node_tests("pkg")),
-            Check::Page => log.step("page", || page::page().and_then(|()| node_tests("page"))),
+            Check::Pkg => log.step("pkg", || node_tests("tests/pkg")),
+            Check::Page => log.step("page", || {
+                page::page().and_then(|()| node_tests("tests/page"))
+            }),
         }
     }
     log.finish()
@@ -173,13 +175,13 @@ fn wasm(log: &mut Log) {
     for build in Build::ALL {
         log.step(&format!("wasm: compile {}", build.name()), || {
             run(
-                wasm_tests(build, &toolchain, &tools).arg("--no-run"),
+                wasm_tests(build, &toolchain, &tools)?.arg("--no-run"),
                 "the tests did not compile, see above",
             )
         });
         for (browser, variable, driver) in &browsers {
             log.step(&format!("wasm: {} in {browser}", build.name()), || {
-                let mut tests = wasm_tests(build, &toolchain, &tools);
+                let mut tests = wasm_tests(build, &toolchain, &tools)?;
                 // The runner takes the first driver that any of these names.
                 for (_, other, _) in &browsers {
                     tests.env_remove(other);
@@ -194,18 +196,34 @@ fn wasm(log: &mut Log) {
     }
 }
 
-/// `--tests`: documentation tests would take rustdoc from PATH, which is another compiler's.
-fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
+/// The test binaries that have wasm tests. The others would compile for nothing.
+fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Result<Command> {
     let mut tests = build.cargo(toolchain, "test");
+    for name in wasm_test_names()? {
+        tests.args(["--test", &name]);
+    }
     tests
-        .args(["--quiet", "--tests", "--no-fail-fast", "--config"])
+        .args(["--no-fail-fast", "--config"])
         .arg(format!(
             "target.{TARGET}.runner=[{:?}, \"test-runner\"]",
             tools.display().to_string()
         ))
         .env("WASM_BINDGEN_TEST_TIMEOUT", "300")
         .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
-    tests
+    Ok(tests)
+}
+
+/// Files in tests/ that use wasm-bindgen-test.
+fn wasm_test_names() -> Result<Vec<String>> {
+    let names = files("tests", ".rs")?.into_iter().filter_map(|path| {
+        let text = std::fs::read_to_string(&path).ok()?;
+        let name = path.file_stem()?.to_str()?.to_string();
+        text.contains("wasm_bindgen_test").then_some(name)
+    });
+    match names.collect::<Vec<_>>() {
+        none if none.is_empty() => Err("no file in tests/ uses wasm_bindgen_test".into()),
+        names => Ok(names),
+    }
 }
 
 /// Types of the package, the page and the tests, wherever there is a tsconfig.json.
@@ -232,37 +250,30 @@ fn types() -> Result<()> {
     Ok(())
 }
 
-/// The tests in tests/<folder>, by Node's own runner.
+/// The tests in a folder, by Node's own runner.
 fn node_tests(folder: &str) -> Result<()> {
     for installed in ["pkg", "tests"] {
         setup::npm(&root().join(installed))?;
     }
-    let mut tests = command("node");
-    if folder == "page" {
-        tests.env("CHROMIUM", setup::chromium()?);
+    let files = files(folder, ".test.mjs")?;
+    if files.is_empty() {
+        return Err(format!("{folder} holds no *.test.mjs"));
     }
-    tests
-        .args(["--test", "--test-reporter=spec"])
-        .args(test_files(folder)?);
-    run(
-        &mut tests,
-        &format!("tests in tests/{folder} failed, see above"),
-    )
+    let mut tests = command("node");
+    tests.env("CHROMIUM", setup::chromium()?);
+    tests.args(["--test", "--test-reporter=spec"]).args(files);
+    run(&mut tests, &format!("tests in {folder} failed, see above"))
 }
 
-fn test_files(folder: &str) -> Result<Vec<String>> {
-    let path = format!("tests/{folder}");
-    let entries = std::fs::read_dir(root().join(&path))
-        .map_err(|error| format!("{path} cannot be read: {error}"))?;
-    let mut files: Vec<String> = entries
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| name.ends_with(".test.mjs"))
-        .map(|name| format!("{path}/{name}"))
+/// Files of a folder of the workspace whose name ends so, sorted.
+fn files(folder: &str, end: &str) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(root().join(folder))
+        .map_err(|error| format!("{folder} cannot be read: {error}"))?;
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.to_string_lossy().ends_with(end))
         .collect();
     files.sort();
-    if files.is_empty() {
-        return Err(format!("{path} holds no *.test.mjs"));
-    }
     Ok(files)
 }
 
@@ -297,6 +308,11 @@ mod tests {
         );
         assert!(select(&["--only"]).is_err());
         assert!(select(&["wasm"]).is_err());
+    }
+
+    #[test]
+    fn wasm_tests_are_found() {
+        assert!(wasm_test_names().unwrap().contains(&"pool".to_string()));
     }
 
     #[test]
