@@ -8,6 +8,8 @@ use pointweave::report::{Topology, area, topology, volume};
 use pointweave::rng::Rng;
 use pointweave::{Error, Stage};
 use std::f64::consts::PI;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 /// A function, the region in which it counts as fitted, and its extension.
 struct Analytic<V, C, G> {

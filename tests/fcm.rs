@@ -4,6 +4,8 @@ use glam::{DVec3, Vec3};
 use pointweave::fcm::{Fcm, FcmParams, Prototypes, Start};
 use pointweave::params::Norm;
 use pointweave::rng::Rng;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 /// The equations one by one, a loop for each sum.
 mod naive {

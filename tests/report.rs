@@ -9,6 +9,8 @@ use pointweave::report::{
 };
 use pointweave::rng::Rng;
 use pointweave::{Error, Stage};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 /// A grid of n × m quads over the whole of a torus (both seams closed), a tube (`v` open) or a sheet.
 fn grid(

@@ -5,6 +5,8 @@ use pointweave::Cloud;
 use pointweave::octree::Octree;
 use pointweave::rng::Rng;
 use pointweave::samples::{Model, NOISE, Sample, sample, sample_with_noise};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 fn diagonal(model: Model) -> f64 {
     let (low, high) = model.bounds();
