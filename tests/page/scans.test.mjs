@@ -25,11 +25,14 @@ async function checkResult(site, points) {
   assert.ok(difference(pictures.points, pictures.reduced) > 0.01, 'scan and reduced points look different');
   assert.ok(difference(pictures.reduced, pictures.mesh) > 0.01, 'reduced points and mesh look different');
 
-  const scan = silhouette(pictures.points).closed(6);
-  const mesh = silhouette(pictures.mesh).closed(6);
+  const dots = silhouette(pictures.points);
+  const { width, height } = dots.box;
+  const gap = Math.ceil(1.5 * Math.sqrt((2 * width * height) / points.length)); // pixels between two points
+  const scan = dots.closed(Math.max(4, gap));
+  const mesh = silhouette(pictures.mesh).closed(4);
   assert.ok(mesh.area > 0.05 * mesh.width * mesh.height, 'the mesh fills a good part of the picture');
   const drawn = overlap(scan, mesh);
-  const expected = overlap(expectedSilhouette(points).closed(8).normalized(), mesh.normalized());
+  const expected = overlap(expectedSilhouette(points).closed(Math.max(4, gap)).normalized(), mesh.normalized());
   assert.ok(drawn > SAME_SHAPE, `scan and mesh cover the same pixels: ${drawn.toFixed(3)}`);
   assert.ok(expected > SAME_SHAPE, `the mesh looks like the projected points: ${expected.toFixed(3)}`);
 }

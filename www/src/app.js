@@ -132,7 +132,7 @@ export class App {
   #made(/** @type {Outcome} */ outcome) {
     const { reduced, mesh } = outcome;
     this.#viewer?.set('reduced', reduced);
-    this.#viewer?.set('mesh', mesh && { ...mesh, closed: mesh.report.boundaryEdges === 0 });
+    this.#viewer?.set('mesh', mesh);
     this.#offer('reduced', true);
     this.#offer('mesh', Boolean(mesh));
     this.#numbers.made(outcome);

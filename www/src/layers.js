@@ -12,7 +12,6 @@ import { meshMaterial, pointMaterial } from './materials.js';
  * @property {Float32Array} [normals]
  * @property {Uint8Array} [colors]
  * @property {Uint32Array} [indices]
- * @property {boolean} [closed]  the mesh has no border
  */
 
 /** Points wider than their spacing close the surface; narrower ones can be told apart. */
@@ -45,7 +44,7 @@ export function meshLayer(source, frame) {
   const geometry = geometryOf(source, frame);
   geometry.setIndex(new BufferAttribute(/** @type {Uint32Array} */ (source.indices), 1));
   if (source.colors) geometry.setAttribute('color', new BufferAttribute(linearColors(source.colors), 3, true));
-  const layer = new Mesh(geometry, meshMaterial({ colored: Boolean(source.colors), closed: Boolean(source.closed) }));
+  const layer = new Mesh(geometry, meshMaterial({ colored: Boolean(source.colors) }));
   layer.frustumCulled = false;
   return layer;
 }

@@ -1,20 +1,24 @@
-import { Color, DoubleSide, FrontSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
+import { Color, DoubleSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
 import { studioMatcap } from './matcap.js';
 
 /**
- * The mesh: a matcap, tinted by the theme or by the scan's own colours. The inner side of an open mesh is darker
- * and warmer, so that one sees which side is which; that of a closed mesh is never seen.
- * @param {{ colored: boolean, closed: boolean }} options
+ * The mesh: a matcap, tinted by the theme or by the scan's own colours. Its inner side is darker and warmer, so
+ * that one sees which side is which. Triangles that only just turn away, as at every outline, do not count as
+ * inner: they would be specks along the rim.
+ * @param {{ colored: boolean }} options
  */
-export function meshMaterial({ colored, closed }) {
-  const side = closed ? FrontSide : DoubleSide;
-  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side, vertexColors: colored });
+export function meshMaterial({ colored }) {
+  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side: DoubleSide, vertexColors: colored });
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace(
-      '#include <opaque_fragment>',
-      `if (!gl_FrontFacing) outgoingLight *= vec3(0.62, 0.46, 0.4);
-      #include <opaque_fragment>`,
-    );
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <normal_fragment_begin>', /* glsl */ `
+        vec3 normal = normalize(vNormal);
+        bool inner = !gl_FrontFacing && dot(normal, normalize(vViewPosition)) < -0.15;
+        if (inner) normal = -normal;
+        vec3 nonPerturbedNormal = normal;`)
+      .replace('#include <opaque_fragment>', /* glsl */ `
+        if (inner) outgoingLight *= vec3(0.8, 0.72, 0.67);
+        #include <opaque_fragment>`);
   };
   return material;
 }
