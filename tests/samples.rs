@@ -72,6 +72,25 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_another_scan() {
 }
 
 #[test]
+fn the_bits_are_the_same_on_every_machine() {
+    // FNV-1a over the bits of all positions; native and wasm run this same test.
+    let checksum = |scan: &Sample| {
+        let bytes = scan.positions.iter().flat_map(|x| x.to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        })
+    };
+    for (model, expected) in [
+        (Model::Duck, 0xfd9d_5bf3_da01_0ac4),
+        (Model::Pig, 0x0c2a_a257_6369_a2bf),
+        (Model::Part, 0x85c3_e69d_c309_1eb3),
+    ] {
+        let found = checksum(&sample(model, 3_000, 9));
+        assert_eq!(found, expected, "{model:?}: {found:#x}");
+    }
+}
+
+#[test]
 fn the_noise_along_the_ray_is_what_was_asked_for() {
     for model in Model::ALL {
         for noise in [2e-4, NOISE, 2e-3] {

@@ -7,6 +7,8 @@ wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
 mod extract;
 #[path = "fcm.rs"]
 mod fcm;
+#[path = "formats.rs"]
+mod formats;
 #[path = "report.rs"]
 mod report;
 #[path = "samples.rs"]
