@@ -43,6 +43,17 @@ pub struct Settling {
     pub max_iterations: usize,
 }
 
+/// What is clustered, in the octree's order.
+#[derive(Clone, Copy)]
+pub struct Samples<'a> {
+    /// Positions, denoised.
+    pub points: &'a [Vec3],
+    /// Their spacing is used.
+    pub features: &'a Features,
+    /// The wanted density.
+    pub density: &'a Density,
+}
+
 /// The centres of all cells.
 #[derive(Debug, Clone)]
 pub struct Clusters {
@@ -66,10 +77,13 @@ pub struct Shares {
 
 /// One cell: its points, and the centres within their reach.
 struct Cell {
-    points: Range<usize>,
+    range: Range<usize>,
     /// Middle of the box and mean wanted spacing: coordinates inside are (x - origin) / unit.
     origin: Vec3,
     unit: f32,
+    /// Centres farther than this from the middle along any axis are out of reach.
+    half: Vec3,
+    /// The others, in ascending order.
     reach: Vec<u32>,
 }
 
@@ -85,17 +99,15 @@ struct Scratch {
 
 /// Clusters the cloud: `quotas[i]` centres start in `cells[i]`.
 pub fn cluster(
-    tree: &Octree,
-    features: &Features,
-    density: &Density,
+    samples: Samples,
     (ranges, quotas): (&[Range<usize>], &[usize]),
     settling: &Settling,
     progress: &mut dyn Progress,
 ) -> Result<Clusters> {
-    let mut centers = start(tree, density, ranges, quotas);
+    let mut centers = start(samples, ranges, quotas);
     let mut cells: Vec<Cell> = ranges
         .iter()
-        .map(|range| Cell::new(tree, density, range.clone()))
+        .map(|range| Cell::new(samples, range.clone()))
         .collect();
     let mut iterations = 0;
     while iterations < settling.max_iterations {
@@ -105,24 +117,20 @@ pub fn cluster(
         )?;
         // The start is uneven; after two sweeps centres hardly leave a cell's reach any more.
         if iterations == 0 || iterations == 2 {
-            gather(&mut cells, &centers, tree, density);
+            gather(&mut cells, &centers);
         }
         let moved = match Fuzzifier::new(settling.fuzzifier) {
-            Fuzzifier::Two(power) => sweep(power, tree, features, density, &cells, &mut centers),
-            Fuzzifier::ThreeHalves(power) => {
-                sweep(power, tree, features, density, &cells, &mut centers)
-            }
-            Fuzzifier::FiveQuarters(power) => {
-                sweep(power, tree, features, density, &cells, &mut centers)
-            }
-            Fuzzifier::Any(power) => sweep(power, tree, features, density, &cells, &mut centers),
+            Fuzzifier::Two(power) => sweep(power, samples, &cells, &mut centers),
+            Fuzzifier::ThreeHalves(power) => sweep(power, samples, &cells, &mut centers),
+            Fuzzifier::FiveQuarters(power) => sweep(power, samples, &cells, &mut centers),
+            Fuzzifier::Any(power) => sweep(power, samples, &cells, &mut centers),
         };
         iterations += 1;
         if moved < settling.epsilon {
             break;
         }
     }
-    gather(&mut cells, &centers, tree, density);
+    gather(&mut cells, &centers);
     let shares = par::map(
         cells.len(),
         || (),
@@ -130,13 +138,13 @@ pub fn cluster(
             let cell = &cells[i];
             let of = |k| {
                 Shares::of(
-                    tree.points[k],
+                    samples.points[k],
                     &centers,
                     cell.reach.iter().copied(),
                     settling.fuzzifier,
                 )
             };
-            cell.points.clone().map(of).collect::<Vec<Shares>>()
+            cell.range.clone().map(of).collect::<Vec<Shares>>()
         },
     );
     Ok(Clusters {
@@ -147,36 +155,31 @@ pub fn cluster(
 }
 
 impl Cell {
-    fn new(tree: &Octree, density: &Density, points: Range<usize>) -> Cell {
-        let (mut lo, mut hi, mut unit) = (Vec3::INFINITY, Vec3::NEG_INFINITY, 0.0);
-        for k in points.clone() {
-            lo = lo.min(tree.points[k]);
-            hi = hi.max(tree.points[k]);
-            unit += density.spacing[k];
+    fn new(samples: Samples, range: Range<usize>) -> Cell {
+        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (mut sum, mut widest) = (0.0, 0.0f32);
+        for k in range.clone() {
+            lo = lo.min(samples.points[k]);
+            hi = hi.max(samples.points[k]);
+            sum += samples.density.spacing[k];
+            widest = widest.max(samples.density.spacing[k]);
         }
         Cell {
             origin: 0.5 * (lo + hi),
-            unit: (unit / points.len() as f32).max(f32::MIN_POSITIVE),
-            points,
+            half: 0.5 * (hi - lo) + REACH * widest,
+            unit: (sum / range.len() as f32).max(f32::MIN_POSITIVE),
+            range,
             reach: Vec::new(),
         }
-    }
-
-    fn half_extent(&self, tree: &Octree) -> Vec3 {
-        let far = |p: &Vec3| (*p - self.origin).abs();
-        tree.points[self.points.clone()]
-            .iter()
-            .map(far)
-            .fold(Vec3::ZERO, Vec3::max)
     }
 }
 
 /// Farthest-first traversal in every cell, in units of the wanted spacing (Gonzalez, "Clustering to minimize the
 /// maximum intercluster distance", 1985): deterministic, and at four iterations 20-25 % less error than random starts.
-fn start(tree: &Octree, density: &Density, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
+fn start(samples: Samples, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
     let chosen = par::map(ranges.len(), Vec::new, |i, far: &mut Vec<f32>| {
-        let points = &tree.points[ranges[i].clone()];
-        let spacing = &density.spacing[ranges[i].clone()];
+        let points = &samples.points[ranges[i].clone()];
+        let spacing = &samples.density.spacing[ranges[i].clone()];
         let mean = points.iter().sum::<Vec3>() / points.len() as f32;
         far.clear();
         far.extend(points.iter().map(|p| p.distance_squared(mean)));
@@ -211,21 +214,15 @@ fn highest(values: &[f32]) -> usize {
         .unwrap_or(0)
 }
 
-/// Finds the centres within each cell's reach, in ascending order; at least the nearest one.
-fn gather(cells: &mut [Cell], centers: &[Vec3], tree: &Octree, density: &Density) {
+/// Finds the centres within each cell's reach; at least the nearest one.
+fn gather(cells: &mut [Cell], centers: &[Vec3]) {
     let index = Octree::build(centers);
     let reaches = par::map(cells.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
         let cell = &cells[i];
-        let widest = density.spacing[cell.points.clone()]
-            .iter()
-            .fold(0.0f32, |a, &b| a.max(b));
-        let half = cell.half_extent(tree) + REACH * widest;
-        index.within(cell.origin, half.length(), found);
+        index.within(cell.origin, cell.half.length(), found);
         let inside = |n: &&Neighbor| {
-            (index.points[n.index as usize] - cell.origin)
-                .abs()
-                .cmple(half)
-                .all()
+            let away = (index.points[n.index as usize] - cell.origin).abs();
+            away.cmple(cell.half).all()
         };
         let mut reach: Vec<u32> = found
             .iter()
@@ -246,15 +243,13 @@ fn gather(cells: &mut [Cell], centers: &[Vec3], tree: &Octree, density: &Density
 /// One pass of eq. 5 and eq. 2 over all cells. Returns the largest movement, in wanted spacings.
 fn sweep<P: Power<f32> + Send + Sync>(
     power: P,
-    tree: &Octree,
-    features: &Features,
-    density: &Density,
+    samples: Samples,
     cells: &[Cell],
     centers: &mut [Vec3],
 ) -> f64 {
     let parts = par::map(cells.len(), Scratch::default, |i, scratch| {
         let cell = &cells[i];
-        scratch.load(tree, features, density, cell, centers);
+        scratch.load(samples, cell, centers);
         scratch.accumulate(power);
         let total = |sums: &[[f32; LANES]; 4]| sums.map(|lanes| lanes.iter().sum());
         scratch.sums.iter().map(total).collect::<Vec<[f32; 4]>>()
@@ -283,29 +278,22 @@ fn sweep<P: Power<f32> + Send + Sync>(
 }
 
 impl Scratch {
-    fn load(
-        &mut self,
-        tree: &Octree,
-        features: &Features,
-        density: &Density,
-        cell: &Cell,
-        centers: &[Vec3],
-    ) {
-        let n = cell.points.len();
+    fn load(&mut self, samples: Samples, cell: &Cell, centers: &[Vec3]) {
+        let n = cell.range.len();
         let padded = n.div_ceil(LANES) * LANES;
         let local = |p: Vec3| (p - cell.origin) / cell.unit;
         for x in &mut self.x {
             x.clear();
         }
         self.weight.clear();
-        for k in cell.points.clone() {
-            let p = local(tree.points[k]);
+        for k in cell.range.clone() {
+            let p = local(samples.points[k]);
             self.x[0].push(p.x);
             self.x[1].push(p.y);
             self.x[2].push(p.z);
             // w = ρ²/f with ρ = 1/h² and 1/f the area of surface that the point stands for.
-            let h2 = (density.spacing[k] / cell.unit).powi(2);
-            let area = (features.spacing[k] / cell.unit).powi(2);
+            let h2 = (samples.density.spacing[k] / cell.unit).powi(2);
+            let area = (samples.features.spacing[k] / cell.unit).powi(2);
             self.weight.push(area / (h2 * h2));
         }
         for x in &mut self.x {

@@ -1,4 +1,10 @@
 //! What the points say of the surface around them: spacing, unoriented normal, curvature, surface variation, noise.
+//!
+//! 1. A quadric is fitted to the nearest neighbours of every point: normal, curvature, and the noise from its residuals.
+//! 2. Where there is noise, normals are averaged over a larger support, over neighbours whose normals agree (a bilateral
+//!    filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases stay.
+//! 3. Each point's distance to the surface is the mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on
+//!    every quadric, with a third of the variance that fitting one would have, and blind to the far side of a crease.
 
 use crate::error::Result;
 use crate::linalg::{SymEigen, sym_eigen};
@@ -7,88 +13,170 @@ use crate::par;
 use crate::progress::{Progress, Stage};
 use glam::{DVec3, Vec3};
 use nalgebra::{SMatrix, SVector};
+use std::ops::Range;
 
 /// Per-point features in the octree's (Morton) order; lengths in the unit frame.
 #[derive(Debug, Clone)]
 pub struct Features {
     /// Wanted distance of neighbours on the surface, √(area a point), from the area of the disc that holds k neighbours.
     pub spacing: Vec<f32>,
-    /// Unit normal of arbitrary sign: direction of least variance of the neighbours; zero where there is none.
+    /// Unit normal of arbitrary sign, of the local quadric; zero where there is none.
     pub normals: Vec<Vec3>,
-    /// Frobenius norm of the Hessian of the local quadric, 1/length; 1/fit radius at most.
+    /// Frobenius norm of the Hessian of the local quadric, what the noise adds removed, 1/length; 1/fit radius at most.
     pub curvature: Vec<f32>,
     /// Surface variation λ0/(λ0+λ1+λ2) of the neighbours, 0 (flat) to 1/3 (Pauly, Gross, Kobbelt, "Efficient
     /// simplification of point-sampled surfaces", 2002).
     pub variation: Vec<f32>,
-    /// Distance of the point to its local quadric.
+    /// Signed distance of the point to its local quadric, along its normal: `point - residual * normal` is denoised.
     pub residual: Vec<f32>,
     /// Estimated standard deviation of the noise across the surface.
     pub noise: f32,
 }
 
-/// Neighbours that are asked for at first; noisy clouds get more.
-const NEIGHBORS: usize = 16;
-/// Most neighbours of a noisy cloud.
-const MAX_NEIGHBORS: usize = 64;
+/// Points that look for their neighbours together.
+const GROUP: usize = 16;
 /// Unknowns of the quadric z = a + bx + cy + dx² + exy + fy².
 const QUADRIC: usize = 6;
+/// Groups whose fits measure the noise: 16 points each give its level to about 1 %.
+const NOISE_GROUPS: usize = 512;
+/// Noise, in spacings, up to which points are left where they are, and from which they are moved all the way: on clean
+/// clouds the curvature inside the fit's support looks like noise of 0.02 spacings.
+const NOISE_FLOOR: Range<f32> = 0.04..0.1;
 
-impl Features {
-    /// Measures them. Cost: one k-nearest query and one 6×6 solve a point; twice where there is noise.
-    pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
-        let first = Features::with_neighbors(tree, NEIGHBORS, progress)?;
-        let k = neighbors_for(&first);
-        if k == NEIGHBORS {
-            Ok(first)
-        } else {
-            Features::with_neighbors(tree, k, progress)
+/// Supports that follow the noise.
+#[derive(Debug, Clone, Copy)]
+struct Scales {
+    /// Neighbours of a quadric.
+    fit: usize,
+    /// Neighbours of the filter.
+    filter: f32,
+    noise: f32,
+    /// 0: leave points where they are, 1: move them onto the surface.
+    denoise: f32,
+}
+
+impl Scales {
+    /// A fit sees the surface, not a ball of noise, when its radius, √(k/π) spacings, is a few times the noise.
+    fn new(noise: f32, spacing: f32) -> Scales {
+        let relative = noise / spacing.max(f32::MIN_POSITIVE);
+        let ramp = (relative - NOISE_FLOOR.start) / (NOISE_FLOOR.end - NOISE_FLOOR.start);
+        Scales {
+            fit: (16.0 + 8.0 * relative + 12.0 * relative * relative).min(128.0) as usize,
+            filter: (24.0 + 80.0 * relative).min(256.0),
+            noise,
+            denoise: ramp.clamp(0.0, 1.0),
         }
     }
+}
 
-    fn with_neighbors(tree: &Octree, k: usize, progress: &mut dyn Progress) -> Result<Features> {
-        let n = tree.points.len();
-        let local = par::map_progress(
-            n,
-            0.2 * k as f32,
-            (Stage::Features, progress),
-            Vec::new,
-            |i, found: &mut Vec<Neighbor>| {
-                tree.knn(tree.points[i], k, found);
-                Local::of(tree, i, found)
-            },
-        )?;
-        let mut residuals: Vec<f32> = local.iter().map(|l| l.residual.abs()).collect();
-        residuals.sort_unstable_by(f32::total_cmp);
-        // The median absolute residual of a normal variable is 0.6745 σ; a fit of k points with 6 unknowns keeps
-        // (k - 6)/k of the variance.
-        let kept = ((k - QUADRIC) as f32 / k as f32).sqrt();
-        let noise = residuals[n / 2] / 0.6745 / kept;
-        Ok(Features {
+impl Features {
+    /// Measures them. Cost: one fit a point, and where there is noise two passes over the neighbours; about
+    /// log n + 100 steps a point.
+    pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+        let groups = tree.cut(|node| node.range().len() <= GROUP);
+        let scales = scales(tree, &groups);
+        let mut part = Part {
+            progress,
+            from: 0.0,
+            to: if scales.denoise > 0.0 { 0.6 } else { 1.0 },
+        };
+        let local: Vec<Local> = par::map_progress(
+            groups.len(),
+            40.0,
+            (Stage::Features, &mut part),
+            Scratch::default,
+            |i, scratch| scratch.group(tree, groups[i].clone(), scales.fit),
+        )?
+        .concat();
+        let mut features = Features {
             spacing: local.iter().map(|l| l.spacing).collect(),
             normals: local.iter().map(|l| l.normal).collect(),
             curvature: local.iter().map(|l| l.curvature).collect(),
             variation: local.iter().map(|l| l.variation).collect(),
-            residual: local.iter().map(|l| l.residual).collect(),
-            noise,
-        })
+            residual: vec![0.0; local.len()],
+            noise: scales.noise,
+        };
+        if scales.denoise > 0.0 {
+            for (from, to, step) in [(0.6, 0.8, Step::Normals), (0.8, 1.0, Step::Offsets)] {
+                let mut part = Part {
+                    progress: part.progress,
+                    from,
+                    to,
+                };
+                let filtered = par::map_progress(
+                    groups.len(),
+                    20.0,
+                    (Stage::Features, &mut part),
+                    Filter::default,
+                    |i, filter| filter.group(tree, &features, groups[i].clone(), &scales, step),
+                )?
+                .concat();
+                match step {
+                    Step::Normals => features.normals = filtered.iter().map(|f| f.normal).collect(),
+                    Step::Offsets => {
+                        features.residual = filtered.iter().map(|f| f.offset).collect();
+                        features.curvature = filtered.iter().map(|f| f.curvature).collect();
+                    }
+                }
+            }
+        }
+        Ok(features)
+    }
+
+    /// The points moved onto their local quadrics.
+    pub fn denoised(&self, tree: &Octree) -> Vec<Vec3> {
+        let moved = |i: usize| tree.points[i] - self.residual[i] * self.normals[i];
+        (0..tree.points.len()).map(moved).collect()
     }
 
     /// Median of the spacing.
     pub fn median_spacing(&self) -> f32 {
-        let mut s = self.spacing.clone();
-        s.sort_unstable_by(f32::total_cmp);
-        s[s.len() / 2]
+        median(self.spacing.clone())
     }
 }
 
-/// Neighbours so that the noise tilts a normal no more than without noise: the tilt is about σ/(r √k), r ∝ √k.
-fn neighbors_for(features: &Features) -> usize {
-    let relative = features.noise / features.median_spacing().max(f32::MIN_POSITIVE);
-    // Measured on the bench clouds: 16 up to a tenth of a spacing, 48 to 64 at one spacing.
-    ((16.0 + 48.0 * (relative - 0.1)) as usize).clamp(NEIGHBORS, MAX_NEIGHBORS)
+/// A part of a stage's progress.
+struct Part<'a> {
+    progress: &'a mut dyn Progress,
+    from: f32,
+    to: f32,
+}
+
+impl Progress for Part<'_> {
+    fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
+        self.progress
+            .update(stage, self.from + (self.to - self.from) * fraction)
+    }
+}
+
+/// The noise from the fits of some groups, and the supports that follow from it.
+fn scales(tree: &Octree, groups: &[Range<usize>]) -> Scales {
+    let mut scales = Scales::new(0.0, 1.0);
+    // Twice: a noise level found with too few neighbours is low, as they then fill a ball.
+    for _ in 0..2 {
+        let step = groups.len().div_ceil(NOISE_GROUPS);
+        let chosen: Vec<Range<usize>> = groups.iter().step_by(step).cloned().collect();
+        let local = par::map(chosen.len(), Scratch::default, |i, scratch| {
+            scratch.group(tree, chosen[i].clone(), scales.fit)
+        })
+        .concat();
+        let residual = median(local.iter().map(|l| l.residual.abs()).collect());
+        // The median absolute value of a normal variable is 0.6745 σ; a fit of k points with 6 unknowns keeps
+        // (k - 6)/k of the variance.
+        let kept = ((scales.fit - QUADRIC) as f32 / scales.fit as f32).sqrt();
+        let spacing = median(local.iter().map(|l| l.spacing).collect());
+        scales = Scales::new(residual / 0.6745 / kept, spacing);
+    }
+    scales
+}
+
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_unstable_by(f32::total_cmp);
+    values[values.len() / 2]
 }
 
 /// The features of one point.
+#[derive(Debug, Clone, Copy, Default)]
 struct Local {
     spacing: f32,
     normal: Vec3,
@@ -97,105 +185,336 @@ struct Local {
     residual: f32,
 }
 
-impl Local {
-    fn of(tree: &Octree, i: usize, found: &[Neighbor]) -> Local {
-        let radius2 = found.last().map_or(0.0, |n| n.distance2 as f64);
-        let spacing = (std::f64::consts::PI * radius2 / found.len() as f64).sqrt();
-        let (mean, eigen) = covariance(tree, found);
-        let total = eigen.values[0].max(0.0) + eigen.values[1] + eigen.values[2];
-        // Fewer than three points, or all on a line, have no normal.
-        if eigen.values[1] <= 1e-12 * radius2 || radius2 == 0.0 {
-            let variation = 0.0;
-            return Local {
-                spacing: spacing as f32,
-                normal: Vec3::ZERO,
-                curvature: 0.0,
-                variation,
-                residual: 0.0,
-            };
+/// Memory of one worker.
+#[derive(Default)]
+struct Scratch {
+    found: Vec<Neighbor>,
+    candidates: Vec<Neighbor>,
+    /// (squared distance, index) of the candidates, as integers that order the same way.
+    keys: Vec<u64>,
+    nearest: Vec<u32>,
+}
+
+impl Scratch {
+    /// The features of the points `range`, which lie close together, from `k` neighbours each.
+    fn group(&mut self, tree: &Octree, range: Range<usize>, k: usize) -> Vec<Local> {
+        let (center, extent) = ball(&tree.points[range.clone()]);
+        tree.knn(center, k, &mut self.found);
+        let reach = self.found[self.found.len() - 1].distance2.sqrt();
+        // Every point of the group has its nearest ones within `reach` plus twice the way to the centre. Groups that an
+        // outlier stretches ask the tree for each point.
+        let together = extent <= 2.0 * reach && reach > 0.0;
+        if together {
+            tree.within(center, reach + 2.0 * extent, &mut self.candidates);
         }
-        let variation = (eigen.values[0].max(0.0) / total) as f32;
-        let radius = radius2.sqrt();
-        let p = tree.points[i].as_dvec3();
-        let (curvature, residual, normal) = match quadric(tree, found, mean, &eigen, radius, p) {
-            Some(q) => q,
-            None => (0.0, (p - mean).dot(eigen.vectors[0]), eigen.vectors[0]),
-        };
-        Local {
-            spacing: spacing as f32,
-            normal: normal.as_vec3(),
-            curvature: curvature.min(1.0 / radius) as f32,
-            variation,
-            residual: residual as f32,
+        range
+            .map(|i| {
+                if together {
+                    self.select(tree, i, k);
+                } else {
+                    tree.knn(tree.points[i], k, &mut self.found);
+                    self.keys.clear();
+                    self.keys.extend(self.found.iter().map(key));
+                }
+                self.local(tree, i)
+            })
+            .collect()
+    }
+
+    /// Leaves the keys of the `k` candidates nearest to point `i` in `keys`, nearest first.
+    fn select(&mut self, tree: &Octree, i: usize, k: usize) {
+        let p = tree.points[i];
+        self.keys.clear();
+        self.keys.extend(self.candidates.iter().map(|n| {
+            let distance2 = tree.points[n.index as usize].distance_squared(p);
+            key(&Neighbor {
+                distance2,
+                index: n.index,
+            })
+        }));
+        if k < self.keys.len() {
+            self.keys.select_nth_unstable(k - 1);
+            self.keys.truncate(k);
+        }
+        self.keys.sort_unstable();
+    }
+
+    fn local(&mut self, tree: &Octree, i: usize) -> Local {
+        self.nearest.clear();
+        self.nearest.extend(self.keys.iter().map(|&key| key as u32));
+        let radius2 = self
+            .keys
+            .last()
+            .map_or(0.0, |key| f64::from(f32::from_bits((key >> 32) as u32)));
+        let spacing = (std::f64::consts::PI * radius2 / self.nearest.len() as f64).sqrt() as f32;
+        match Fit::new(tree, self.nearest.iter().copied(), radius2.sqrt()) {
+            None => Local {
+                spacing,
+                ..Local::default()
+            },
+            Some(fit) => {
+                let at = fit.at(tree.points[i].as_dvec3());
+                Local {
+                    spacing,
+                    normal: at.normal.as_vec3(),
+                    curvature: fit.curvature() as f32,
+                    variation: fit.variation as f32,
+                    residual: at.offset as f32,
+                }
+            }
         }
     }
 }
 
-fn covariance(tree: &Octree, found: &[Neighbor]) -> (DVec3, SymEigen) {
-    let position = |n: &Neighbor| tree.points[n.index as usize].as_dvec3();
-    let mean = found.iter().map(position).sum::<DVec3>() / found.len() as f64;
+/// Middle and radius of a few points.
+fn ball(points: &[Vec3]) -> (Vec3, f32) {
+    let center = points.iter().sum::<Vec3>() / points.len() as f32;
+    (
+        center,
+        points
+            .iter()
+            .map(|p| p.distance(center))
+            .fold(0.0, f32::max),
+    )
+}
+
+/// Orders as (distance, index) does: positive floats order as their bits do.
+fn key(n: &Neighbor) -> u64 {
+    u64::from(n.distance2.to_bits()) << 32 | u64::from(n.index)
+}
+
+/// A least-squares quadric over the plane of least variance.
+struct Fit {
+    mean: DVec3,
+    /// Normal and two tangents of the plane.
+    axes: [DVec3; 3],
+    radius: f64,
+    points: f64,
+    variation: f64,
+    /// z = c0 + c1 x + c2 y + c3 x² + c4 xy + c5 y², lengths in radii.
+    c: [f64; QUADRIC],
+}
+
+/// A quadric near a point: signed distance of the point along the normal there.
+struct At {
+    offset: f64,
+    normal: DVec3,
+}
+
+impl Fit {
+    /// `None` for points on a line or at one place; the plane alone with fewer than eight points.
+    fn new(tree: &Octree, found: impl Iterator<Item = u32> + Clone, radius: f64) -> Option<Fit> {
+        let position = |i: u32| tree.points[i as usize].as_dvec3();
+        let (mean, eigen, points) = covariance(found.clone().map(position));
+        let values = eigen.values;
+        // Fewer than three points, or all on a line, have no normal.
+        if values[1] <= 1e-12 * values[2] || radius == 0.0 {
+            return None;
+        }
+        let mut fit = Fit {
+            mean,
+            axes: eigen.vectors,
+            radius,
+            points,
+            variation: values[0].max(0.0) / (values[0].max(0.0) + values[1] + values[2]),
+            c: [0.0; QUADRIC],
+        };
+        if points >= (QUADRIC + 2) as f64 {
+            fit.bend(found.map(position));
+        }
+        Some(fit)
+    }
+
+    fn local(&self, p: DVec3) -> [f64; 3] {
+        let d = (p - self.mean) / self.radius;
+        let [normal, u, v] = self.axes;
+        [d.dot(u), d.dot(v), d.dot(normal)]
+    }
+
+    /// Solves for the quadric's coefficients; leaves the plane where the system is singular.
+    fn bend(&mut self, positions: impl Iterator<Item = DVec3>) {
+        let mut ata = SMatrix::<f64, QUADRIC, QUADRIC>::zeros();
+        let mut atz = SVector::<f64, QUADRIC>::zeros();
+        for p in positions {
+            let [x, y, z] = self.local(p);
+            let row = [1.0, x, y, x * x, x * y, y * y];
+            for a in 0..QUADRIC {
+                for b in a..QUADRIC {
+                    ata[(b, a)] += row[a] * row[b];
+                }
+                atz[a] += row[a] * z;
+            }
+        }
+        // Keeps the system regular when the points lie on a conic; far below any curvature that matters.
+        for a in 0..QUADRIC {
+            ata[(a, a)] += 1e-9 * self.points;
+        }
+        if let Some(cholesky) = nalgebra::Cholesky::new(ata) {
+            self.c.copy_from_slice(cholesky.solve(&atz).as_slice());
+        }
+    }
+
+    fn at(&self, p: DVec3) -> At {
+        let c = &self.c;
+        let [x, y, z] = self.local(p);
+        let height = c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y;
+        let (dx, dy) = (
+            c[1] + 2.0 * c[3] * x + c[4] * y,
+            c[2] + c[4] * x + 2.0 * c[5] * y,
+        );
+        let [normal, u, v] = self.axes;
+        let slope = (1.0 + dx * dx + dy * dy).sqrt();
+        At {
+            // The vertical distance, foreshortened by the slope.
+            offset: (z - height) * self.radius / slope,
+            normal: (normal - dx * u - dy * v) / slope,
+        }
+    }
+
+    /// Frobenius norm of the Hessian, at most 1/radius.
+    fn curvature(&self) -> f64 {
+        let c = &self.c;
+        let square = 4.0 * c[3] * c[3] + 2.0 * c[4] * c[4] + 4.0 * c[5] * c[5];
+        square.sqrt().min(1.0) / self.radius
+    }
+}
+
+/// Mean, eigen-decomposition of the covariance, and count.
+fn covariance(positions: impl Iterator<Item = DVec3> + Clone) -> (DVec3, SymEigen, f64) {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for p in positions.clone() {
+        sum += p;
+        count += 1.0;
+    }
+    let mean = sum / count;
     let mut m = [0.0; 6];
-    for n in found {
-        let d = position(n) - mean;
-        for (sum, product) in m.iter_mut().zip([
+    for p in positions {
+        let d = p - mean;
+        let products = [
             d.x * d.x,
             d.x * d.y,
             d.x * d.z,
             d.y * d.y,
             d.y * d.z,
             d.z * d.z,
-        ]) {
+        ];
+        for (sum, product) in m.iter_mut().zip(products) {
             *sum += product;
         }
     }
-    (mean, sym_eigen(&m))
+    (mean, sym_eigen(&m), count)
 }
 
-/// Least-squares quadric over the tangent plane: curvature (Frobenius norm of its Hessian), residual of `p`, and its
-/// normal at `p`. `None` with too few points or a singular system.
-fn quadric(
-    tree: &Octree,
-    found: &[Neighbor],
-    mean: DVec3,
-    eigen: &SymEigen,
-    radius: f64,
-    p: DVec3,
-) -> Option<(f64, f64, DVec3)> {
-    if found.len() < QUADRIC + 2 {
-        return None;
+/// What a pass of the filter finds.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Normals,
+    Offsets,
+}
+
+/// Result of the filter at one point.
+#[derive(Debug, Clone, Copy, Default)]
+struct Filtered {
+    normal: Vec3,
+    offset: f32,
+    curvature: f32,
+}
+
+/// Memory of one worker of the filter.
+#[derive(Default)]
+struct Filter {
+    candidates: Vec<Neighbor>,
+}
+
+/// Angle (as length of the difference of unit normals) from which neighbours have nothing to say to each other.
+const SAME_SIDE: f32 = 0.5;
+/// Distances along the normal, in standard deviations of the noise, from which they have not: another sheet.
+const SAME_SHEET: f32 = 5.0;
+
+impl Filter {
+    fn group(
+        &mut self,
+        tree: &Octree,
+        features: &Features,
+        range: Range<usize>,
+        scales: &Scales,
+        step: Step,
+    ) -> Vec<Filtered> {
+        let (center, extent) = ball(&tree.points[range.clone()]);
+        let area = features.spacing[range.clone()]
+            .iter()
+            .map(|s| s * s)
+            .sum::<f32>()
+            / range.len() as f32;
+        let support = (area * scales.filter / std::f32::consts::PI).sqrt();
+        let together = extent <= 2.0 * support;
+        if together {
+            tree.within(center, support + extent, &mut self.candidates);
+        }
+        range
+            .map(|i| {
+                if !together {
+                    tree.within(tree.points[i], support, &mut self.candidates);
+                }
+                self.at(tree, features, i, support * support, scales, step)
+            })
+            .collect()
     }
-    let [normal, u, v] = eigen.vectors;
-    let mut ata = SMatrix::<f64, QUADRIC, QUADRIC>::zeros();
-    let mut atz = SVector::<f64, QUADRIC>::zeros();
-    let row = |x: f64, y: f64| [1.0, x, y, x * x, x * y, y * y];
-    let frame = |q: DVec3| (q.dot(u) / radius, q.dot(v) / radius, q.dot(normal) / radius);
-    for n in found {
-        let (x, y, z) = frame(tree.points[n.index as usize].as_dvec3() - mean);
-        let r = row(x, y);
-        for a in 0..QUADRIC {
-            for b in a..QUADRIC {
-                ata[(b, a)] += r[a] * r[b];
+
+    fn at(
+        &self,
+        tree: &Octree,
+        features: &Features,
+        i: usize,
+        support2: f32,
+        scales: &Scales,
+        step: Step,
+    ) -> Filtered {
+        let (p, n) = (tree.points[i], features.normals[i]);
+        let (mut normal, mut offset, mut total) = (Vec3::ZERO, 0.0, 0.0);
+        let (mut turn, mut way) = (0.0, 0.0);
+        let sheet2 = (SAME_SHEET * scales.noise).powi(2);
+        let side2 = SAME_SIDE * SAME_SIDE;
+        for c in &self.candidates {
+            let j = c.index as usize;
+            let d = p - tree.points[j];
+            let near = 1.0 - d.length_squared() / support2;
+            if near <= 0.0 {
+                continue;
             }
-            atz[a] += r[a] * z;
+            let dot = n.dot(features.normals[j]);
+            let other = if dot < 0.0 {
+                -features.normals[j]
+            } else {
+                features.normals[j]
+            };
+            let angle2 = 2.0 - 2.0 * dot.abs();
+            let away = 0.5 * (n + other).dot(d);
+            let side = (1.0 - angle2 / side2).max(0.0);
+            let sheet = (1.0 - away * away / sheet2).max(0.0);
+            let w = near * near * side * side * sheet * sheet;
+            normal += w * other;
+            offset += w * away;
+            total += w;
+            turn += near * sheet * angle2;
+            way += near * sheet * d.length_squared();
+        }
+        match step {
+            Step::Normals => Filtered {
+                normal: normal.normalize_or(n),
+                ..Filtered::default()
+            },
+            Step::Offsets => Filtered {
+                normal: n,
+                offset: scales.denoise * if total > 0.0 { offset / total } else { 0.0 },
+                curvature: if way > 0.0 {
+                    (2.0 * turn / way).sqrt().min(1.0 / support2.sqrt())
+                } else {
+                    0.0
+                },
+            },
         }
     }
-    // Keeps the system regular when the neighbours lie on a conic; far below any curvature that matters.
-    for a in 0..QUADRIC {
-        ata[(a, a)] += 1e-9 * found.len() as f64;
-    }
-    let c = nalgebra::Cholesky::new(ata)?.solve(&atz);
-    let (x, y, z) = frame(p - mean);
-    let fitted: f64 = row(x, y).iter().zip(c.iter()).map(|(r, c)| r * c).sum();
-    let hessian = (4.0 * c[3] * c[3] + 2.0 * c[4] * c[4] + 4.0 * c[5] * c[5]).sqrt() / radius;
-    let (dx, dy) = (
-        c[1] + 2.0 * c[3] * x + c[4] * y,
-        c[2] + c[4] * x + 2.0 * c[5] * y,
-    );
-    Some((
-        hessian,
-        (z - fitted) * radius,
-        (normal - dx * u - dy * v).normalize(),
-    ))
 }
 
 #[cfg(test)]

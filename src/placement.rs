@@ -80,7 +80,7 @@ pub struct Placed {
 
 /// Places every centre.
 pub fn place(
-    tree: &Octree,
+    points: &[Vec3],
     features: &Features,
     centers: &[Vec3],
     members: &Members,
@@ -92,7 +92,7 @@ pub fn place(
         |i, ()| {
             let mut sums = Sums::default();
             for &(k, u) in members.of(i) {
-                sums.add(tree, features, k as usize, u, m);
+                sums.add(points, features, k as usize, u, m);
             }
             sums.place(centers[i], placement)
         },
@@ -114,10 +114,10 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, tree: &Octree, features: &Features, k: usize, u: f32, m: f64) {
+    fn add(&mut self, points: &[Vec3], features: &Features, k: usize, u: f32, m: f64) {
         let u = f64::from(u);
         let n = features.normals[k].as_dvec3();
-        let x = tree.points[k].as_dvec3();
+        let x = points[k].as_dvec3();
         if self.membership == 0.0 {
             self.origin = x;
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::cloud::Cloud;
-use crate::clusters::{self, SHARES, Settling, Shares};
+use crate::clusters::{self, SHARES, Samples, Settling, Shares};
 use crate::density::{self, Density};
 use crate::error::Result;
 use crate::features::Features;
@@ -81,12 +81,13 @@ pub fn reduce(
 ) -> Result<Reduced> {
     params.validate()?;
     let m = fuzzifier(params);
+    let denoised = features.denoised(tree);
     let clustering = match (params.method, count(params.target, tree, features)) {
         (_, Some(count)) if count == cloud.len() => keep_all(tree, features),
         (Method::Paper, count) => paper::cluster(tree, features, count, params, progress)?,
         (Method::Adaptive, count) => adaptive(
             tree,
-            features,
+            (features, &denoised),
             count.unwrap_or(cloud.len()),
             params,
             progress,
@@ -102,7 +103,7 @@ pub fn reduce(
     };
     let members = Members::new(&clustering.shares, clustering.centers.len());
     let placed = placement::place(
-        tree,
+        &denoised,
         features,
         &clustering.centers,
         &members,
@@ -183,7 +184,7 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 
 fn adaptive(
     tree: &Octree,
-    features: &Features,
+    (features, points): (&Features, &[Vec3]),
     count: usize,
     params: &ReduceParams,
     progress: &mut dyn Progress,
@@ -197,14 +198,12 @@ fn adaptive(
         epsilon: params.epsilon.unwrap_or(1e-2),
         max_iterations: params.max_iterations.unwrap_or(8),
     };
-    let clusters = clusters::cluster(
-        tree,
+    let samples = Samples {
+        points,
         features,
-        &density,
-        (&cells, &quotas),
-        &settling,
-        progress,
-    )?;
+        density: &density,
+    };
+    let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
     Ok(Clustering {
         centers: clusters.centers,
         shares: clusters.shares,
