@@ -166,10 +166,7 @@ fn curvature_spacing(features: &Features, groups: &[Range<usize>], alpha: f64) -
     for _ in 0..2 {
         let mean = spacing.iter().zip(&area).map(|(h, a)| h * a).sum::<f64>() / total;
         for h in &mut spacing {
-            *h = (*h / mean).clamp(
-                crate::placement::tun("FINEST", 0.25),
-                crate::placement::tun("COARSEST", 2.0),
-            );
+            *h = (*h / mean).clamp(f64::from(FINEST), f64::from(COARSEST));
         }
     }
     spacing.iter().map(|h| (h * unit) as f32).collect()
