@@ -35,6 +35,9 @@ fn surface_points(model: Model, count: usize) -> Vec<DVec3> {
     while points.len() < count {
         let mut p = random_point(model, &mut rng);
         for _ in 0..30 {
+            if model.distance(p).abs() < 1e-7 * diagonal(model) {
+                break;
+            }
             let gradient = model.gradient(p);
             p -= gradient * (model.distance(p) / gradient.length_squared().max(0.1));
         }
@@ -292,7 +295,7 @@ impl Voxels {
 #[test]
 fn every_solid_is_one_piece_with_the_handles_it_claims() {
     for model in Model::ALL {
-        let voxels = Voxels::of(model, 0.0937);
+        let voxels = Voxels::of(model, 0.117);
         assert_eq!(voxels.regions(true), 1, "{model:?} is in pieces");
         assert_eq!(voxels.regions(false), 1, "{model:?} has a hollow");
         // A solid with g handles has the Euler characteristic 1 - g.
@@ -355,7 +358,7 @@ fn the_density_is_uneven_but_no_large_part_of_the_surface_is_missing() {
         let tree = Octree::build(&cloud.points);
         let spacings = spacings(&tree);
         let (low, median, high) = (spacings[1_000], spacings[10_000], spacings[19_000]);
-        let targets = surface_points(model, 20_000);
+        let targets = surface_points(model, 4_000);
         let mut gaps: Vec<f32> = targets
             .iter()
             .map(|p| {
@@ -366,17 +369,17 @@ fn the_density_is_uneven_but_no_large_part_of_the_surface_is_missing() {
         gaps.sort_by(f32::total_cmp);
         println!(
             "{model:?}: 5 % {low:.4}, median {median:.4}, 95 % {high:.4}; gaps 99 % {:.4}, 99.9 % {:.4}, most {:.4}",
-            gaps[19_800], gaps[19_980], gaps[19_999]
+            gaps[3_960], gaps[3_996], gaps[3_999]
         );
         assert!(
-            gaps[19_800] < 2.0 * median,
+            gaps[3_960] < 2.0 * median,
             "{model:?}: 99 % within {}",
-            gaps[19_800]
+            gaps[3_960]
         );
         assert!(
-            gaps[19_999] < 0.03,
+            gaps[3_999] < 0.03,
             "{model:?}: a hole of radius {}",
-            gaps[19_999]
+            gaps[3_999]
         );
     }
 }
