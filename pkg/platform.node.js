@@ -16,13 +16,13 @@ export const platform = {
   loadGlue,
   startWorker() {
     const worker = new Worker(new URL('./worker.node.js', import.meta.url), { name: 'pointweave', execArgv: [] });
-    worker.unref();
     return {
       post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
         worker.on('message', receive);
         worker.on('error', (error) => fail(error.message));
         worker.on('exit', (code) => fail(`it exited with ${code}`));
+        worker.unref(); // a listener holds the process, so only now
       },
       hold: (busy) => (busy ? worker.ref() : worker.unref()),
       terminate: () => void worker.terminate(),

@@ -229,7 +229,7 @@ export interface WriteOptions {
 export type Model = 'duck' | 'pig' | 'part';
 
 export interface SampleOptions {
-  /** Default: the paper's, 35,647 (`'duck'`) and 171,875 (`'pig'`), and 60,000 (`'part'`). */
+  /** 1 to 10,000,000. Default: the paper's, 35,647 (`'duck'`) and 171,875 (`'pig'`), and 60,000 (`'part'`). */
   count?: number;
   /** An integer from 0. Default 0. */
   seed?: number;
