@@ -13,3 +13,5 @@ mod formats;
 mod report;
 #[path = "samples.rs"]
 mod samples;
+#[path = "surface.rs"]
+mod surface;

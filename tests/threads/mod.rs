@@ -1,6 +1,7 @@
 //! The pool for tests of the wasm-threads build, as `pkg/hosts.js` makes it for the package.
 
-use js_sys::JsString;
+use js_sys::futures::JsFuture;
+use js_sys::{JsString, Promise};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -13,7 +14,7 @@ extern "C" {
 #[wasm_bindgen(module = "/tests/threads/workers.js")]
 extern "C" {
     #[wasm_bindgen(js_name = startWorkers)]
-    async fn start_workers(glue: JsString, module: JsValue, memory: JsValue, threads: usize);
+    fn start_workers(glue: JsString, module: JsValue, memory: JsValue, threads: usize) -> Promise;
 }
 
 /// Starts a pool of `threads`, once a test binary.

@@ -110,42 +110,53 @@ pub fn build() -> Result<()> {
     for build in Build::ALL {
         say(&format!("building wasm, {}", build.name()));
         run(
-            build.cargo(&toolchain, "build").arg("--lib"),
+            build.cargo(&toolchain, "build").args(["--quiet", "--lib"]),
             "the wasm build failed; its errors are above",
         )?;
+        let wasm = build
+            .target_dir()
+            .join(TARGET)
+            .join("release/pointweave.wasm");
         let out = root().join("pkg/wasm").join(build.name());
-        bind(&tools, build, &out)?;
-        optimise(build, &out.join("pointweave_bg.wasm"))?;
+        let made = out.join("pointweave_bg.wasm");
+        if !is_newer(&made, &[&wasm, &tools, &this_program()?]) {
+            let part = build.target_dir().join("pkg");
+            bind(&tools, &wasm, &part)?;
+            optimise(build, &part.join("pointweave_bg.wasm"))?;
+            replace(&part, &out)?;
+        }
     }
     Ok(())
 }
 
+/// Whether a file is there and no older than those that it was made from and by.
+fn is_newer(made: &Path, from: &[&Path]) -> bool {
+    let time = |file: &Path| {
+        fs::metadata(file)
+            .and_then(|metadata| metadata.modified())
+            .ok()
+    };
+    let made = time(made);
+    made.is_some() && from.iter().all(|file| time(file) <= made)
+}
+
+fn this_program() -> Result<PathBuf> {
+    std::env::current_exe()
+        .map_err(|error| format!("xtask cannot find itself ({error}); run it by `cargo xtask`"))
+}
+
 /// The JavaScript side, as modules that a page, a worker and Node load alike.
-fn bind(tools: &Path, build: Build, out: &Path) -> Result<()> {
-    if out.exists() {
-        fs::remove_dir_all(out)
-            .map_err(|error| format!("remove {} yourself: {error}", out.display()))?;
-    }
-    let wasm = build
-        .target_dir()
-        .join(TARGET)
-        .join("release/pointweave.wasm");
+fn bind(tools: &Path, wasm: &Path, out: &Path) -> Result<()> {
     let mut bindgen = command(tools);
     bindgen
-        .args([
-            "bindgen",
-            "--target",
-            "web",
-            "--remove-producers-section",
-            "--out-dir",
-        ])
+        .args(["bindgen", "--target", "web", "--remove-producers-section"])
+        .arg("--out-dir")
         .arg(out)
         .arg(wasm);
     run(&mut bindgen, "wasm-bindgen failed; its error is above")
 }
 
 fn optimise(build: Build, wasm: &Path) -> Result<()> {
-    let before = size(wasm);
     let mut wasm_opt = command("node");
     wasm_opt
         .arg("xtask/node_modules/binaryen/bin/wasm-opt")
@@ -153,15 +164,27 @@ fn optimise(build: Build, wasm: &Path) -> Result<()> {
     if build == Build::Threads {
         wasm_opt.arg("--enable-threads");
     }
+    let before = size(wasm);
     wasm_opt.arg("-O3").arg(wasm).arg("-o").arg(wasm);
     run(&mut wasm_opt, "wasm-opt failed; its error is above")?;
-    say(&format!(
-        "{}: {} kB, wasm-opt made it from {} kB",
-        wasm.display(),
-        size(wasm),
-        before
-    ));
+    let after = size(wasm);
+    say(&format!("wasm-opt: {before} kB to {after} kB"));
     Ok(())
+}
+
+/// Moves a finished folder into place: a build that is stopped halfway leaves the last one as it was.
+fn replace(part: &Path, out: &Path) -> Result<()> {
+    let parent = out.parent().expect("pkg/wasm");
+    let moved = fs::create_dir_all(parent)
+        .and_then(|()| {
+            if out.exists() {
+                fs::remove_dir_all(out)
+            } else {
+                Ok(())
+            }
+        })
+        .and_then(|()| fs::rename(part, out));
+    moved.map_err(|error| format!("{} cannot be replaced: {error}", out.display()))
 }
 
 fn size(file: &Path) -> u64 {
@@ -177,6 +200,25 @@ mod tests {
         assert!(!Build::Single.rust_flags().concat().contains("atomics"));
         assert!(Build::Threads.rust_flags().concat().contains("+atomics"));
         assert_ne!(Build::Single.target_dir(), Build::Threads.target_dir());
+    }
+
+    #[test]
+    fn what_is_missing_or_older_is_made_again() {
+        let folder = std::env::temp_dir().join(format!("pointweave-xtask-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (source, made) = (folder.join("source"), folder.join("made"));
+        fs::write(&source, "").unwrap();
+        assert!(!is_newer(&made, &[&source]));
+        fs::write(&made, "").unwrap();
+        assert!(is_newer(&made, &[&source]));
+        let later =
+            fs::metadata(&made).unwrap().modified().unwrap() + std::time::Duration::from_secs(1);
+        fs::File::open(&source)
+            .unwrap()
+            .set_modified(later)
+            .unwrap();
+        assert!(!is_newer(&made, &[&source]));
+        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

@@ -209,7 +209,7 @@ fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
             "target.{TARGET}.runner=[{:?}, \"test-runner\"]",
             tools.display().to_string()
         ))
-        .env("WASM_BINDGEN_TEST_TIMEOUT", "300")
+        .env("WASM_BINDGEN_TEST_TIMEOUT", "1200")
         .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
     tests
 }
