@@ -1,4 +1,4 @@
-//! From points to a mesh on shapes whose surface is known: natively and, the same tests, in both wasm builds.
+//! From points to a mesh on shapes whose surface is known: natively, and by `wasm.rs` in both wasm builds.
 
 mod common;
 
@@ -8,13 +8,8 @@ use pointweave::params::{Boundary, Kernel, Propagation, Target};
 use pointweave::progress::Silent;
 use pointweave::report::{area, topology, volume};
 use pointweave::{Cloud, Error, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
-#[cfg(not(target_arch = "wasm32"))]
-use std::prelude::v1::test;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
-
-#[cfg(target_arch = "wasm32")]
-wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_dedicated_worker);
 
 fn surface(positions: &[f64], params: &SurfaceParams) -> Result<Surface, Error> {
     reconstruct(&Cloud::from_f64(positions)?, params, &mut Silent)
