@@ -2,16 +2,16 @@
 //!
 //! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
-//! 3. Where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//! 3. `trim`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
 //!
 //! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
 
 use crate::band::{grow, span};
-use crate::dual::{Dual, Quad, Vertex, build};
+use crate::dual::{Dual, build};
 use crate::error::Result;
 use crate::params::Boundary;
 use crate::progress::Progress;
-use crate::report::Sets;
+use crate::trim::{decide_holes, drop_phantoms, split_bow_ties, summarise, trim_rims};
 use glam::{DVec3, Vec3};
 
 /// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
@@ -99,14 +99,15 @@ pub const MOST_FILLED: f64 = 0.35;
 /// field's values only, not on threads or on the order of the points.
 ///
 /// Where no fitted function reaches,
-/// - `Open`: the surface ends: it has no triangle in a cell with an unreached corner;
+/// - `Open`: the surface ends, at most about 1.5 spacings (0.68 of a point's reach) beyond the points: it has no triangle
+///   in a cell with an unreached corner;
 /// - `Closed`: unreached corners take [`Implicit::global`]; the mesh has no boundary edge, the lattice's hull being
 ///   outside;
 /// - `Auto`: like `Closed`, then each connected component gives up what was closed by global values, and stays open, if
 ///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
 ///   surface; components not closed by then stay open.
 ///
-/// A component that no fitted function reaches at all is none.
+/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 4 points.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
@@ -133,106 +134,19 @@ pub fn extract<F: Implicit>(
         params.sharp,
         &mut span(progress, 0.5, 0.95),
     )?;
-    let mut result = Extracted::default();
-    decide_holes(&mut dual, params.boundary, &mut result);
+    decide_holes(&mut dual, params.boundary);
+    trim_rims(&mut dual, points, reach);
+    drop_phantoms(&mut dual, points);
+    let (filled, closed, open) = summarise(&dual);
     split_bow_ties(&mut dual);
-    result.mesh = triangulate(dual);
+    let mesh = triangulate(dual);
     span(progress, 0.95, 1.0)(1.0)?;
-    Ok(result)
-}
-
-fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
-    let [p, q, r, s] = quad
-        .vertices
-        .map(|v| vertices[v as usize].position.as_dvec3());
-    ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
-}
-
-/// Quads around each vertex.
-fn degrees(dual: &Dual) -> Vec<u8> {
-    let mut degrees = vec![0; dual.vertices.len()];
-    dual.quads
-        .iter()
-        .flat_map(|q| q.vertices)
-        .for_each(|v| degrees[v as usize] += 1);
-    degrees
-}
-
-/// Drops the filled quads of the components that are better left open.
-fn decide_holes(dual: &mut Dual, boundary: Boundary, result: &mut Extracted) {
-    let mut components = Sets::new(dual.vertices.len());
-    for quad in &dual.quads {
-        quad.vertices[1..]
-            .iter()
-            .for_each(|&v| components.join(quad.vertices[0], v));
-    }
-    // By component: area, filled area, has a boundary.
-    let mut sums = vec![(0.0, 0.0, false); dual.vertices.len()];
-    for quad in &dual.quads {
-        let (sum, area) = (
-            &mut sums[components.find(quad.vertices[0]) as usize],
-            quad_area(quad, &dual.vertices),
-        );
-        sum.0 += area;
-        sum.1 += if quad.filled { area } else { 0.0 };
-    }
-    for (v, degree) in degrees(dual).into_iter().enumerate() {
-        sums[components.find(v as u32) as usize].2 |= degree < dual.vertices[v].degree;
-    }
-    let is_phantom = |&(area, filled, _): &(f64, f64, bool)| filled == area;
-    let stays_open = |sum: &(f64, f64, bool)| {
-        let is_unclosed = sum.2 || sum.1 > MOST_FILLED * sum.0;
-        is_phantom(sum) || boundary == Boundary::Auto && is_unclosed
-    };
-    dual.quads.retain(|quad| {
-        !quad.filled || !stays_open(&sums[components.find(quad.vertices[0]) as usize])
-    });
-    let (mut area, mut filled) = (0.0, 0.0);
-    for sum in sums.iter().filter(|sum| !is_phantom(sum)) {
-        if stays_open(sum) {
-            area += sum.0 - sum.1;
-            result.open += 1;
-        } else {
-            area += sum.0;
-            filled += sum.1;
-            result.open += usize::from(sum.2);
-            result.closed += usize::from(!sum.2 && sum.1 > 0.0);
-        }
-    }
-    result.filled = if area > 0.0 { filled / area } else { 0.0 };
-}
-
-/// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
-/// an open surface left some out there may be several.
-fn split_bow_ties(dual: &mut Dual) {
-    let degrees = degrees(dual);
-    let is_at_end = |v: u32| degrees[v as usize] < dual.vertices[v as usize].degree;
-    // (vertex, next corner, previous corner, quad) of the quads around vertices at the surface's end.
-    let mut around = Vec::new();
-    for (i, quad) in dual.quads.iter().enumerate() {
-        for k in (0..4).filter(|&k| is_at_end(quad.vertices[k])) {
-            around.push((
-                quad.vertices[k],
-                quad.vertices[(k + 1) % 4],
-                quad.vertices[(k + 3) % 4],
-                i,
-                k,
-            ));
-        }
-    }
-    around.sort_unstable();
-    for fans in around.chunk_by(|a, b| a.0 == b.0) {
-        let starts = fans.iter().filter(|a| fans.iter().all(|b| b.2 != a.1));
-        for start in starts.skip(1) {
-            let copy = dual.vertices.len() as u32;
-            dual.vertices.push(dual.vertices[start.0 as usize]);
-            let mut member = Some(start);
-            while let Some(&(_, _, previous, quad, k)) = member {
-                dual.quads[quad].vertices[k] = copy;
-                member = fans.iter().find(|a| a.1 == previous);
-            }
-        }
-    }
+    Ok(Extracted {
+        mesh,
+        filled,
+        closed,
+        open,
+    })
 }
 
 /// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.

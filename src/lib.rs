@@ -60,6 +60,7 @@ mod lattice;
 mod loops;
 mod dual;
 mod creases;
+mod trim;
 pub mod attach;
 pub mod report;
 pub mod distance;

@@ -418,6 +418,57 @@ fn an_open_surface_ends_where_the_points_end() {
     assert!((r.area() / (2.0 * PI * 0.09) - 1.0).abs() < 0.1);
 }
 
+/// Functions that reach too far do not carry the surface along.
+#[test]
+fn an_open_surface_is_trimmed_near_its_points() {
+    let points: Vec<Vec3> = sample(&sphere, 8000)
+        .into_iter()
+        .filter(|p| p.z > 0.0)
+        .collect();
+    let covered = |x: DVec3| x.z > -0.15 && sphere(x).abs() < 0.05;
+    let field = Analytic {
+        value: sphere,
+        covered,
+        global: sphere,
+    };
+    let r = check(
+        &field,
+        &points,
+        ExtractParams {
+            boundary: Boundary::Open,
+            ..SMOOTH
+        },
+    );
+    let lowest = r.out.mesh.vertices.iter().map(|v| v.z).fold(0.0, f32::min);
+    // 0.68 of the reach of 0.05 beyond the points, and a cell.
+    assert!(lowest < -0.02 && lowest > -0.034 - 0.015, "{lowest}");
+    assert_eq!(
+        (r.topology.components, &r.topology.genus[..]),
+        (1, &[0][..])
+    );
+}
+
+/// A blob that only two stray points lie near is no component; with a few more it is one.
+#[test]
+fn phantoms_are_dropped() {
+    let blob = DVec3::new(0.4, 0.0, 0.0);
+    let value = |x: DVec3| sphere(x).min((x - blob).length() - 0.03);
+    let field = Analytic {
+        value,
+        covered: |_| true,
+        global: value,
+    };
+    let mut points = sample(&sphere, 8000);
+    for (count, components) in [(2, 1), (5, 2)] {
+        points
+            .extend((0..count).map(|i| (blob + DVec3::new(0.0, 0.03, 0.001 * i as f64)).as_vec3()));
+        assert_eq!(
+            check(&field, &points, SMOOTH).topology.components,
+            components
+        );
+    }
+}
+
 #[test]
 fn a_closed_surface_has_no_boundary() {
     let r = cut_ball(0.0, Boundary::Closed);

@@ -1,0 +1,238 @@
+//! What is kept of the dual mesh: holes closed or not, no sheets that no point supports, one fan around each vertex.
+//!
+//! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
+
+use crate::dual::{Dual, Quad, Vertex};
+use crate::extract::MOST_FILLED;
+use crate::octree::Octree;
+use crate::par;
+use crate::params::Boundary;
+use crate::report::Sets;
+use glam::Vec3;
+
+/// An open surface ends this share of a point's reach away from it. Reaches are some 2.2 spacings, so that is 1.5.
+const RIM: f32 = 0.68;
+/// A component that is the nearest one to fewer points than this is a phantom: fewer span no surface.
+const LEAST_POINTS: u32 = 4;
+/// Points that one index of a parallel map takes.
+const POINTS_PER_TASK: usize = 1024;
+
+/// Components with what a decision about them rests on.
+struct Component {
+    area: f64,
+    filled: f64,
+    has_boundary: bool,
+}
+
+/// Drops the filled quads of the components that are better left open, and components that are nothing but filling.
+pub(crate) fn decide_holes(dual: &mut Dual, boundary: Boundary) {
+    let (mut roots, components) = measure(dual);
+    dual.quads.retain(|quad| {
+        let component = &components[roots.find(quad.vertices[0]) as usize];
+        let share = component.filled / component.area;
+        let is_unclosed = component.has_boundary || share > MOST_FILLED;
+        !quad.filled || share < 1.0 && !(boundary == Boundary::Auto && is_unclosed)
+    });
+}
+
+/// Connected components, by the vertex that stands for them.
+fn measure(dual: &Dual) -> (Sets, Vec<Component>) {
+    let mut roots = components(dual);
+    let none = || Component {
+        area: 0.0,
+        filled: 0.0,
+        has_boundary: false,
+    };
+    let mut components: Vec<Component> = dual.vertices.iter().map(|_| none()).collect();
+    for quad in &dual.quads {
+        let component = &mut components[roots.find(quad.vertices[0]) as usize];
+        let area = quad_area(quad, &dual.vertices);
+        component.area += area;
+        component.filled += if quad.filled { area } else { 0.0 };
+    }
+    for (v, degree) in degrees(dual).into_iter().enumerate() {
+        let component = &mut components[roots.find(v as u32) as usize];
+        component.has_boundary |= degree < dual.vertices[v].degree;
+    }
+    (roots, components)
+}
+
+fn components(dual: &Dual) -> Sets {
+    let mut roots = Sets::new(dual.vertices.len());
+    for quad in &dual.quads {
+        quad.vertices[1..]
+            .iter()
+            .for_each(|&v| roots.join(quad.vertices[0], v));
+    }
+    roots
+}
+
+fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
+    let [p, q, r, s] = quad
+        .vertices
+        .map(|v| vertices[v as usize].position.as_dvec3());
+    ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
+}
+
+/// Quads around each vertex.
+fn degrees(dual: &Dual) -> Vec<u8> {
+    let mut degrees = vec![0; dual.vertices.len()];
+    dual.quads
+        .iter()
+        .flat_map(|q| q.vertices)
+        .for_each(|v| degrees[v as usize] += 1);
+    degrees
+}
+
+/// What [`decide_holes`] left: share of the area that is filled, components that were closed, components that are open.
+pub(crate) fn summarise(dual: &Dual) -> (f64, usize, usize) {
+    let (_, components) = measure(dual);
+    let there: Vec<&Component> = components.iter().filter(|c| c.area > 0.0).collect();
+    let (area, filled) = there
+        .iter()
+        .fold((0.0, 0.0), |s, c| (s.0 + c.area, s.1 + c.filled));
+    let closed = there
+        .iter()
+        .filter(|c| c.filled > 0.0 && !c.has_boundary)
+        .count();
+    let open = there.iter().filter(|c| c.has_boundary).count();
+    (if area > 0.0 { filled / area } else { 0.0 }, closed, open)
+}
+
+/// Drops what hangs on an open end farther from every point than [`RIM`] of its reach, from the end inwards: gaps of the
+/// sampling inside of the surface stay closed.
+pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+    let mut degree = degrees(dual);
+    let is_end = |v: u32, degree: &[u8]| degree[v as usize] < dual.vertices[v as usize].degree;
+    let mut ends: Vec<u32> = (0..dual.vertices.len() as u32)
+        .filter(|&v| degree[v as usize] > 0 && is_end(v, &degree))
+        .collect();
+    if ends.is_empty() {
+        return;
+    }
+    let tree = Octree::build(points);
+    let is_far = |quad: &Quad| {
+        let centre = quad
+            .vertices
+            .iter()
+            .map(|&v| dual.vertices[v as usize].position)
+            .sum::<Vec3>()
+            / 4.0;
+        let nearest = tree.nearest(centre);
+        let rim = RIM * reach[tree.order[nearest.index as usize] as usize];
+        nearest.distance2 > rim * rim
+    };
+    let around = quads_around(dual);
+    let mut dropped = vec![false; dual.quads.len()];
+    while let Some(end) = ends.pop() {
+        for &q in around.of(end) {
+            if !dropped[q as usize] && is_far(&dual.quads[q as usize]) {
+                dropped[q as usize] = true;
+                for v in dual.quads[q as usize].vertices {
+                    if !is_end(v, &degree) {
+                        ends.push(v);
+                    }
+                    degree[v as usize] -= 1;
+                }
+            }
+        }
+    }
+    let mut dropped = dropped.into_iter();
+    dual.quads.retain(|_| dropped.next() == Some(false));
+}
+
+/// Lists of quads by vertex.
+struct Around {
+    start: Vec<u32>,
+    quads: Vec<u32>,
+}
+
+impl Around {
+    fn of(&self, v: u32) -> &[u32] {
+        &self.quads[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
+    }
+}
+
+fn quads_around(dual: &Dual) -> Around {
+    let mut start = vec![0u32];
+    start.extend(degrees(dual).iter().scan(0u32, |sum, &d| {
+        *sum += d as u32;
+        Some(*sum)
+    }));
+    let mut next = start.clone();
+    let mut quads = vec![0; 4 * dual.quads.len()];
+    for (i, quad) in dual.quads.iter().enumerate() {
+        for v in quad.vertices {
+            quads[next[v as usize] as usize] = i as u32;
+            next[v as usize] += 1;
+        }
+    }
+    Around { start, quads }
+}
+
+/// Drops components that are the nearest one to fewer than [`LEAST_POINTS`] points; the one with the most points stays.
+pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3]) {
+    let mut roots = components(dual);
+    let used: Vec<u32> = degrees(dual)
+        .iter()
+        .enumerate()
+        .filter(|d| *d.1 > 0)
+        .map(|d| d.0 as u32)
+        .collect();
+    let Some(&first) = used.first() else { return };
+    let root_of: Vec<u32> = used.iter().map(|&v| roots.find(v)).collect();
+    if root_of.iter().all(|&r| r == roots.find(first)) {
+        return;
+    }
+    let positions: Vec<Vec3> = used
+        .iter()
+        .map(|&v| dual.vertices[v as usize].position)
+        .collect();
+    let tree = Octree::build(&positions);
+    let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
+    let nearest = par::map(
+        tasks.len(),
+        || (),
+        |k, ()| {
+            let root = |&p: &Vec3| root_of[tree.order[tree.nearest(p).index as usize] as usize];
+            tasks[k].iter().map(root).collect::<Vec<u32>>()
+        },
+    );
+    let mut votes = vec![0u32; dual.vertices.len()];
+    nearest
+        .into_iter()
+        .flatten()
+        .for_each(|root| votes[root as usize] += 1);
+    let most = votes.iter().copied().max().unwrap_or(0);
+    let least = LEAST_POINTS.min(most);
+    dual.quads
+        .retain(|quad| votes[roots.find(quad.vertices[0]) as usize] >= least);
+}
+
+/// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
+/// an open surface left some out there may be several.
+pub(crate) fn split_bow_ties(dual: &mut Dual) {
+    let degrees = degrees(dual);
+    let is_at_end = |v: u32| degrees[v as usize] < dual.vertices[v as usize].degree;
+    // (vertex, next corner, previous corner, quad, place there) of the quads around vertices at the surface's end.
+    let mut around = Vec::new();
+    for (i, quad) in dual.quads.iter().enumerate() {
+        let corner = |k: usize| quad.vertices[k % 4];
+        for k in (0..4).filter(|&k| is_at_end(corner(k))) {
+            around.push((corner(k), corner(k + 1), corner(k + 3), i, k));
+        }
+    }
+    around.sort_unstable();
+    for fans in around.chunk_by(|a, b| a.0 == b.0) {
+        let starts = fans.iter().filter(|a| fans.iter().all(|b| b.2 != a.1));
+        for start in starts.skip(1) {
+            let copy = dual.vertices.len() as u32;
+            dual.vertices.push(dual.vertices[start.0 as usize]);
+            let mut member = Some(start);
+            while let Some(&(_, _, previous, quad, k)) = member {
+                dual.quads[quad].vertices[k] = copy;
+                member = fans.iter().find(|a| a.1 == previous);
+            }
+        }
+    }
+}
