@@ -1,18 +1,28 @@
-// A bare page that imports the package from a static server, in headless Chromium.
+// Bare pages that import the package from a static server, in headless Chromium and Firefox.
 
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
-import { extname } from 'node:path';
+import { tmpdir } from 'node:os';
+import { extname, join } from 'node:path';
+import { text } from 'node:stream/consumers';
 import { chromium } from 'playwright-core';
 
 const PACKAGE = new URL('../../pkg/', import.meta.url);
 const CHROMIUM = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const FIREFOX = [process.env.FIREFOX, '/usr/bin/firefox-esr', '/usr/bin/firefox'];
 const FLAGS = [
   '--headless=new', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
 ];
+/** A Firefox that starts without questions and calls nobody. */
+const PREFERENCES = {
+  'browser.aboutwelcome.enabled': false, 'browser.shell.checkDefaultBrowser': false, 'app.update.enabled': false,
+  'datareporting.policy.dataSubmissionEnabled': false, 'toolkit.telemetry.enabled': false, 'network.captive-portal-service.enabled': false,
+  'network.connectivity-service.enabled': false, 'app.normandy.enabled': false, 'browser.safebrowsing.malware.enabled': false,
+};
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
 /** As a person would write it: an import map and no bundler. */
@@ -25,30 +35,85 @@ const STRICT = {
 };
 
 /**
- * A page with `pointweave` in reach of `import`. Browser and server end with the test.
+ * A page in Chromium with `pointweave` in reach of `import`. Browser and server end with the test.
  * @param {import('node:test').TestContext} t
  */
 export async function openPage(t, { isolated = true, strict = false } = {}) {
-  const executablePath = CHROMIUM.find((path) => path && existsSync(path));
-  assert.ok(executablePath, 'no Chromium found: install it, or set CHROMIUM to its path');
-  const headers = { ...(isolated && ISOLATED), ...(strict && STRICT) };
-  const server = createServer((request, response) => answer(request.url, headers, response));
-  await new Promise((ready) => server.listen(0, ready));
+  const executablePath = found(CHROMIUM, 'Chromium', 'CHROMIUM');
+  const address = await serve(t, { ...(isolated && ISOLATED), ...(strict && STRICT) }, {});
   const browser = await chromium.launch({ executablePath, args: FLAGS });
-  t.after(async () => {
-    await browser.close();
-    server.close();
-  });
+  t.after(() => browser.close());
   const page = await browser.newPage();
   page.on('pageerror', (error) => t.diagnostic(`page: ${error}`));
-  await page.goto(`http://localhost:${server.address().port}/`);
+  await page.goto(address);
   return page;
 }
 
-async function answer(url, headers, response) {
-  const { pathname } = new URL(url, 'http://localhost');
-  const file = pathname.startsWith('/pointweave/') ? new URL(`.${pathname.slice('/pointweave'.length)}`, PACKAGE) : null;
-  const body = pathname === '/' ? HTML : file && (await readFile(file).catch(() => null));
-  const type = pathname === '/' ? 'text/html' : TYPES[extname(pathname)] ?? 'application/octet-stream';
-  response.writeHead(body ? 200 : 404, { ...headers, 'Content-Type': type }).end(body ?? '');
+/**
+ * What an async function gives in an isolated page in Firefox, which reports to the server: no driver is needed.
+ * @param {import('node:test').TestContext} t
+ * @param {(argument: any) => Promise<any>} job stands alone: only `import('pointweave')` is in its reach
+ * @param {any} argument
+ */
+export async function runInFirefox(t, job, argument) {
+  const executable = found(FIREFOX, 'Firefox', 'FIREFOX');
+  let report;
+  const reported = new Promise((resolve) => (report = resolve));
+  const script = `const job = ${job};
+    const answer = await job(${JSON.stringify(argument)}).then((value) => ({ value }), (error) => ({ error: String(error) }));
+    await fetch('/report', { method: 'POST', body: JSON.stringify(answer) });`;
+  const address = await serve(t, ISOLATED, {
+    '/job.html': () => `${HTML}<script type="module" src="/job.js"></script>`,
+    '/job.js': () => script,
+    '/report': async (request) => (report(JSON.parse(await text(request))), 'thanks'),
+  });
+  const profile = mkdtempSync(join(tmpdir(), 'pointweave-firefox-'));
+  const preferences = Object.entries(PREFERENCES).map(([name, value]) => `user_pref("${name}", ${value});`);
+  writeFileSync(join(profile, 'user.js'), preferences.join('\n'));
+  const firefox = spawn(executable, ['--headless', '--no-remote', '--profile', profile, `${address}job.html`], { stdio: 'ignore' });
+  const ended = new Promise((resolve) => firefox.once('exit', resolve));
+  t.after(async () => {
+    firefox.kill();
+    await ended;
+    rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+  });
+  const { value, error } = await Promise.race([
+    reported,
+    ended.then((code) => ({ error: `Firefox exited with ${code} before the page reported` })),
+  ]);
+  assert.equal(error, undefined);
+  return value;
+}
+
+/** @param {(string | undefined)[]} candidates */
+function found(candidates, name, variable) {
+  const path = candidates.find((candidate) => candidate && existsSync(candidate));
+  assert.ok(path, `no ${name} found: install it, or set ${variable} to its path`);
+  return path;
+}
+
+/**
+ * Serves the package, a bare page and what `routes` gives. Ends with the test.
+ * @param {import('node:test').TestContext} t
+ * @param {Record<string, string>} headers of every response
+ * @param {Record<string, (request: import('node:http').IncomingMessage) => string | Promise<string>>} routes
+ * @returns {Promise<string>} the address
+ */
+async function serve(t, headers, routes) {
+  const server = createServer(async (request, response) => {
+    const { pathname } = new URL(request.url, 'http://localhost');
+    const body = await answer(pathname, request);
+    const type = pathname === '/' ? 'text/html' : TYPES[extname(pathname)] ?? 'application/octet-stream';
+    response.writeHead(body ? 200 : 404, { ...headers, 'Content-Type': type }).end(body ?? '');
+  });
+  const answer = (pathname, request) => {
+    if (pathname === '/') return HTML;
+    if (pathname in routes) return routes[pathname](request);
+    const file = pathname.startsWith('/pointweave/') && new URL(`.${pathname.slice('/pointweave'.length)}`, PACKAGE);
+    return file && readFile(file).catch(() => null);
+  };
+  await new Promise((ready) => server.listen(0, ready));
+  t.after(() => server.closeAllConnections());
+  t.after(() => server.close());
+  return `http://localhost:${server.address().port}/`;
 }
