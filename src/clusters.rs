@@ -14,17 +14,15 @@ use glam::{DVec3, Vec3};
 use crate::density::Density;
 use crate::error::Result;
 use crate::features::Features;
+use crate::lanes::{LANES, Lanes};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::power::{Fuzzifier, Power};
 use crate::progress::{Progress, Stage};
 
-/// Points handled side by side by the inner loops.
-const LANES: usize = 8;
-
 /// How far from a cell's box centres still count, in wanted spacings. Every point of the box has its nearest centre
-/// within about one spacing; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
-const REACH: f32 = 1.75;
+/// within about 0.7 spacings; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
+const REACH: f32 = 1.5;
 
 /// Added to squared distances, in units of the squared spacing: keeps ratios finite at distance zero.
 const TINY: f32 = 1e-6;
@@ -93,8 +91,8 @@ struct Scratch {
     x: [Vec<f32>; 3],
     weight: Vec<f32>,
     centers: Vec<Vec3>,
-    share: Vec<[f32; LANES]>,
-    sums: Vec<[[f32; LANES]; 4]>,
+    share: Vec<Lanes>,
+    sums: Vec<[Lanes; 4]>,
 }
 
 /// Clusters the cloud: `quotas[i]` centres start in `cells[i]`.
@@ -251,7 +249,7 @@ fn sweep<P: Power<f32> + Send + Sync>(
         let cell = &cells[i];
         scratch.load(samples, cell, centers);
         scratch.accumulate(power);
-        let total = |sums: &[[f32; LANES]; 4]| sums.map(|lanes| lanes.iter().sum());
+        let total = |sums: &[Lanes; 4]| sums.map(Lanes::sum);
         scratch.sums.iter().map(total).collect::<Vec<[f32; 4]>>()
     });
     // Sums of Σ w, Σ w (x - v): the movement is small against the position.
@@ -303,41 +301,39 @@ impl Scratch {
         self.centers.clear();
         self.centers
             .extend(cell.reach.iter().map(|&i| local(centers[i as usize])));
-        self.share.resize(cell.reach.len(), [0.0; LANES]);
+        self.share.resize(cell.reach.len(), Lanes::ZERO);
         self.sums.clear();
-        self.sums.resize(cell.reach.len(), [[0.0; LANES]; 4]);
+        self.sums.resize(cell.reach.len(), [Lanes::ZERO; 4]);
     }
 
     /// Memberships of eq. 5 block by block, summed for eq. 2 as they come.
     fn accumulate<P: Power<f32>>(&mut self, power: P) {
         for block in (0..self.weight.len()).step_by(LANES) {
-            let lanes = |v: &[f32]| -> [f32; LANES] { std::array::from_fn(|l| v[block + l]) };
-            let [x, y, z] = [lanes(&self.x[0]), lanes(&self.x[1]), lanes(&self.x[2])];
-            let weight = lanes(&self.weight);
+            let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.x[axis][block..]));
+            let weight = Lanes::load(&self.weight[block..]);
 
-            let mut nearest = [f32::INFINITY; LANES];
+            let mut nearest = Lanes::splat(f32::INFINITY);
             for (distance, v) in self.share.iter_mut().zip(&self.centers) {
-                for l in 0..LANES {
-                    let (dx, dy, dz) = (x[l] - v.x, y[l] - v.y, z[l] - v.z);
-                    distance[l] = dx * dx + dy * dy + dz * dz + TINY;
-                    nearest[l] = nearest[l].min(distance[l]);
-                }
+                let (dx, dy, dz) = (
+                    x - Lanes::splat(v.x),
+                    y - Lanes::splat(v.y),
+                    z - Lanes::splat(v.z),
+                );
+                *distance = dx * dx + dy * dy + dz * dz + Lanes::splat(TINY);
+                nearest = nearest.min(*distance);
             }
-            let mut total = [0.0; LANES];
+            let mut total = Lanes::ZERO;
             for share in &mut self.share {
-                for l in 0..LANES {
-                    share[l] = power.share(nearest[l] / share[l]);
-                    total[l] += share[l];
-                }
+                *share = (nearest / *share).map(|ratio| power.share(ratio));
+                total += *share;
             }
+            let inverse = Lanes::splat(1.0) / total;
             for (share, sums) in self.share.iter().zip(&mut self.sums) {
-                for l in 0..LANES {
-                    let w = weight[l] * power.raise(share[l] / total[l]);
-                    sums[0][l] += w;
-                    sums[1][l] += w * x[l];
-                    sums[2][l] += w * y[l];
-                    sums[3][l] += w * z[l];
-                }
+                let w = weight * (*share * inverse).map(|u| power.raise(u));
+                sums[0] += w;
+                sums[1] += w * x;
+                sums[2] += w * y;
+                sums[3] += w * z;
             }
         }
     }

@@ -7,6 +7,7 @@
 //!    every quadric, with a third of the variance that fitting one would have, and blind to the far side of a crease.
 
 use crate::error::Result;
+use crate::lanes::{LANES, Lanes};
 use crate::linalg::{SymEigen, sym_eigen};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
@@ -421,16 +422,21 @@ struct Filtered {
     curvature: f32,
 }
 
-/// Memory of one worker of the filter.
+/// Memory of one worker of the filter: neighbours of a group, structure of arrays padded to whole lanes with points that
+/// are out of every support.
 #[derive(Default)]
 struct Filter {
     candidates: Vec<Neighbor>,
+    position: [Vec<f32>; 3],
+    normal: [Vec<f32>; 3],
 }
 
 /// Angle (as length of the difference of unit normals) from which neighbours have nothing to say to each other.
 const SAME_SIDE: f32 = 0.5;
 /// Distances along the normal, in standard deviations of the noise, from which they have not: another sheet.
 const SAME_SHEET: f32 = 5.0;
+/// Coordinate of a padding lane: outside of every support, and small enough to be squared.
+const FAR: f32 = 1e6;
 
 impl Filter {
     fn group(
@@ -451,65 +457,90 @@ impl Filter {
         let together = extent <= 2.0 * support;
         if together {
             tree.within(center, support + extent, &mut self.candidates);
+            self.load(tree, features, center);
         }
         range
             .map(|i| {
                 if !together {
                     tree.within(tree.points[i], support, &mut self.candidates);
+                    self.load(tree, features, center);
                 }
-                self.at(tree, features, i, support * support, scales, step)
+                let p = tree.points[i] - center;
+                self.at(p, features.normals[i], support, scales, step)
             })
             .collect()
     }
 
-    fn at(
-        &self,
-        tree: &Octree,
-        features: &Features,
-        i: usize,
-        support2: f32,
-        scales: &Scales,
-        step: Step,
-    ) -> Filtered {
-        let (p, n) = (tree.points[i], features.normals[i]);
-        let (mut normal, mut offset, mut total) = (Vec3::ZERO, 0.0, 0.0);
-        let (mut turn, mut way) = (0.0, 0.0);
-        let sheet2 = (SAME_SHEET * scales.noise).powi(2);
-        let side2 = SAME_SIDE * SAME_SIDE;
-        for c in &self.candidates {
-            let j = c.index as usize;
-            let d = p - tree.points[j];
-            let near = 1.0 - d.length_squared() / support2;
-            if near <= 0.0 {
-                continue;
-            }
-            let dot = n.dot(features.normals[j]);
-            let other = if dot < 0.0 {
-                -features.normals[j]
-            } else {
-                features.normals[j]
-            };
-            let angle2 = 2.0 - 2.0 * dot.abs();
-            let away = 0.5 * (n + other).dot(d);
-            let side = (1.0 - angle2 / side2).max(0.0);
-            let sheet = (1.0 - away * away / sheet2).max(0.0);
-            let w = near * near * side * side * sheet * sheet;
-            normal += w * other;
-            offset += w * away;
-            total += w;
-            turn += near * sheet * angle2;
-            way += near * sheet * d.length_squared();
+    fn load(&mut self, tree: &Octree, features: &Features, origin: Vec3) {
+        let padded = self.candidates.len().next_multiple_of(LANES);
+        for axis in 0..3 {
+            let of = |v: &[Vec3], j: u32| v[j as usize][axis];
+            let position = self
+                .candidates
+                .iter()
+                .map(|c| of(&tree.points, c.index) - origin[axis]);
+            self.position[axis].clear();
+            self.position[axis].extend(position);
+            self.position[axis].resize(padded, FAR);
+            self.normal[axis].clear();
+            self.normal[axis].extend(
+                self.candidates
+                    .iter()
+                    .map(|c| of(&features.normals, c.index)),
+            );
+            self.normal[axis].resize(padded, 0.0);
         }
+    }
+
+    fn at(&self, p: Vec3, n: Vec3, support: f32, scales: &Scales, step: Step) -> Filtered {
+        let one = Lanes::splat(1.0);
+        let half = Lanes::splat(0.5);
+        let support2 = Lanes::splat(1.0 / (support * support));
+        let sheet2 = Lanes::splat(1.0 / (SAME_SHEET * scales.noise).powi(2));
+        let side2 = Lanes::splat(1.0 / (SAME_SIDE * SAME_SIDE));
+        let clip = |x: Lanes| x.max(Lanes::ZERO);
+        let [px, py, pz, nx, ny, nz] = [p.x, p.y, p.z, n.x, n.y, n.z].map(Lanes::splat);
+        let mut sums = [Lanes::ZERO; 5];
+        let (mut turn, mut way) = (Lanes::ZERO, Lanes::ZERO);
+        for block in (0..self.position[0].len()).step_by(LANES) {
+            let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.position[axis][block..]));
+            let [mx, my, mz] = [0, 1, 2].map(|axis| Lanes::load(&self.normal[axis][block..]));
+            let (dx, dy, dz) = (px - x, py - y, pz - z);
+            let length2 = dx * dx + dy * dy + dz * dz;
+            let near = clip(one - length2 * support2);
+            let dot = nx * mx + ny * my + nz * mz;
+            let sign = dot.map(|d| 1f32.copysign(d));
+            let (mx, my, mz) = (mx * sign, my * sign, mz * sign);
+            let angle2 = clip(Lanes::splat(2.0) - (dot + dot) * sign);
+            let away = half * ((nx + mx) * dx + (ny + my) * dy + (nz + mz) * dz);
+            let sheet = clip(one - away * away * sheet2);
+            let side = clip(one - angle2 * side2);
+            let root = near * side * sheet;
+            let w = root * root;
+            for (sum, term) in sums.iter_mut().zip([one, away, mx, my, mz]) {
+                *sum += w * term;
+            }
+            let any_side = near * sheet;
+            turn += any_side * angle2;
+            way += any_side * length2;
+        }
+        let [total, offset, mx, my, mz] = sums.map(Lanes::sum);
+        let (turn, way) = (turn.sum(), way.sum());
         match step {
             Step::Normals => Filtered {
-                normal: normal.normalize_or(n),
+                normal: Vec3::new(mx, my, mz).normalize_or(n),
                 ..Filtered::default()
             },
             Step::Offsets => Filtered {
                 normal: n,
-                offset: scales.denoise * if total > 0.0 { offset / total } else { 0.0 },
+                offset: if total > 0.0 {
+                    scales.denoise * offset / total
+                } else {
+                    0.0
+                },
+                // Normals turn by κ1 dx and κ2 dy, whose squares have the mean ½ (κ1² + κ2²) d² around a point.
                 curvature: if way > 0.0 {
-                    (2.0 * turn / way).sqrt().min(1.0 / support2.sqrt())
+                    (2.0 * turn / way).sqrt().min(1.0 / support)
                 } else {
                     0.0
                 },

@@ -37,6 +37,7 @@ pub mod progress;
 pub mod par;
 pub mod rng;
 pub mod power;
+pub mod lanes;
 pub mod linalg;
 pub mod kernel;
 
