@@ -3,6 +3,7 @@
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use crate::shell::{Result, cargo, command, find, output, root, run, say};
 use crate::toolchain;
@@ -52,7 +53,8 @@ pub fn apt(packages: &[&str], what: &str, otherwise: &str) -> Result<()> {
         apt_get.stdout(std::io::stderr());
         apt_get
     };
-    let update = run(&mut apt_get(&["update"]), "apt-get update failed");
+    static UPDATED: OnceLock<Result<()>> = OnceLock::new();
+    let update = UPDATED.get_or_init(|| run(&mut apt_get(&["update"]), "apt-get update failed"));
     let mut install = vec!["install", "--yes", "--no-install-recommends"];
     install.extend(packages);
     run(&mut apt_get(&install), &by_hand).map_err(|error| match update {
@@ -77,9 +79,8 @@ pub fn rust_component(name: &str) -> Result<()> {
 
 /// wasm-bindgen's tools, of the version that Cargo.lock gives the library.
 pub fn wasm_tools() -> Result<PathBuf> {
-    let program = root()
-        .join("target/xtask")
-        .join(format!("wasm-tools{}", env::consts::EXE_SUFFIX));
+    let target = root().join("target");
+    let program = target.join(format!("xtask/wasm-tools{}", env::consts::EXE_SUFFIX));
     if !program.is_file() {
         say("building wasm-bindgen's tools, once: about 3 minutes on 2 cores");
     }
@@ -93,7 +94,9 @@ pub fn wasm_tools() -> Result<PathBuf> {
                 "--profile",
                 "xtask",
             ])
-            .args(["--features", "wasm-tools", "--bin", "wasm-tools"]),
+            .args(["--features", "wasm-tools", "--bin", "wasm-tools"])
+            .arg("--target-dir")
+            .arg(target),
         "wasm-bindgen's tools did not build; their errors are above",
     )?;
     Ok(program)

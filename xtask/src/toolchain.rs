@@ -56,8 +56,8 @@ impl Toolchain {
         }
     }
 
-    fn sysroot(&self) -> Option<PathBuf> {
-        let mut rustc = match self {
+    fn rustc(&self) -> Command {
+        match self {
             Self::Rustup(name) => {
                 let mut rustc = command("rustc");
                 rustc.env("RUSTUP_TOOLCHAIN", name);
@@ -65,14 +65,27 @@ impl Toolchain {
             }
             Self::Path => command("rustc"),
             Self::Debian => command("/usr/bin/rustc"),
-        };
-        output(rustc.args(["--print", "sysroot"])).map(PathBuf::from)
+        }
     }
 
+    /// New enough, with the sources of its standard library.
     fn is_complete(&self) -> bool {
-        self.sysroot()
-            .is_some_and(|sysroot| has_library_sources(&sysroot))
+        let version = output(self.rustc().arg("--version"));
+        let sysroot = output(self.rustc().args(["--print", "sysroot"]));
+        version.is_some_and(|version| is_new_enough(&version))
+            && sysroot.is_some_and(|sysroot| has_library_sources(Path::new(&sysroot)))
     }
+}
+
+/// Whether `rustc 1.96.0 (…)` can compile the workspace.
+fn is_new_enough(version: &str) -> bool {
+    let number = version.split_whitespace().nth(1).unwrap_or_default();
+    minor(number) >= minor(env!("CARGO_PKG_RUST_VERSION"))
+}
+
+/// 96 of 1.96.0.
+fn minor(version: &str) -> Option<u32> {
+    version.split('.').nth(1)?.parse().ok()
 }
 
 fn has_library_sources(sysroot: &Path) -> bool {
@@ -159,6 +172,17 @@ mod tests {
             ]
         );
         assert_eq!(active_first("", ""), Vec::<String>::new());
+    }
+
+    #[test]
+    fn an_old_compiler_will_not_do() {
+        assert!(is_new_enough(
+            "rustc 1.196.0 (ac68faa20 2036-05-25) (built from a source tarball)"
+        ));
+        assert!(!is_new_enough(
+            "rustc 1.72.0-nightly (0ab38e95b 2023-05-25)"
+        ));
+        assert!(!is_new_enough(""));
     }
 
     #[test]
