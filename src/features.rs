@@ -162,19 +162,25 @@ fn scales(tree: &Octree, groups: &[Range<usize>]) -> Scales {
             scratch.group(tree, chosen[i].clone(), scales.fit)
         })
         .concat();
-        let residual = median(local.iter().map(|l| l.residual.abs()).collect());
-        // The median absolute value of a normal variable is 0.6745 σ; a quadric over k points of a
-        // disc takes 4/k of the variance at the middle.
+        // The lower quartile, as detail that the quadrics miss must not pass for noise: smooth parts tell. That of the
+        // absolute value of a normal variable is 0.3186 σ; a quadric over k points of a disc takes 4/k of the variance at
+        // the middle.
+        let residual = quantile(local.iter().map(|l| l.residual.abs()).collect(), 4);
         let kept = (1.0 - 4.0 / scales.fit as f32).sqrt();
         let spacing = median(local.iter().map(|l| l.spacing).collect());
-        scales = Scales::new(residual / 0.6745 / kept, spacing);
+        scales = Scales::new(residual / 0.3186 / kept, spacing);
     }
     scales
 }
 
-fn median(mut values: Vec<f32>) -> f32 {
+fn median(values: Vec<f32>) -> f32 {
+    quantile(values, 2)
+}
+
+/// The value that 1/`parts` of the values are below.
+fn quantile(mut values: Vec<f32>, parts: usize) -> f32 {
     values.sort_unstable_by(f32::total_cmp);
-    values[values.len() / 2]
+    values[values.len() / parts]
 }
 
 /// The features of one point.
