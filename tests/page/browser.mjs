@@ -26,6 +26,9 @@ const TYPES = {
 /** What lies over the picture, hidden for pixel tests. */
 const PICTURE_ONLY = '.caption, .tools, .views, .progress, .message { visibility: hidden !important }';
 
+/** Where pictures are kept for people to look at, when this is set. */
+const PICTURES = process.env.POINTWEAVE_PICTURES;
+
 /** Long enough for the largest scan on a slow machine. */
 export const PATIENCE = 300_000;
 
@@ -116,6 +119,12 @@ class PageUnderTest {
     await this.settled();
   }
 
+  /** Waits until this file is open and its mesh is made. */
+  async opened(name) {
+    await this.page.waitForFunction((title) => document.querySelector('#caption-title').textContent === title, name, { timeout: PATIENCE });
+    await this.made();
+  }
+
   /** Drops a file on the middle of the page, with its real events, and waits until the page has taken it. */
   async drop(name, bytes) {
     const path = `/dropped/${encodeURIComponent(name)}`;
@@ -156,9 +165,10 @@ class PageUnderTest {
     return this.page.locator('#canvas').screenshot({ style: PICTURE_ONLY, animations: 'disabled' });
   }
 
-  /** The picture of one view. */
-  async pictureOf(view) {
+  /** The picture of one view. Under a name it is kept, where the environment says so. */
+  async pictureOf(view, name = '') {
     await this.show(view);
+    if (PICTURES && name) await this.page.screenshot({ path: join(PICTURES, `${name}-${view}.png`), animations: 'disabled' });
     return this.picture();
   }
 

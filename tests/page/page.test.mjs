@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import { PATIENCE, start } from './browser.mjs';
-import { difference, overlap, silhouette } from './pictures.mjs';
+import { difference, meanColor, overlap, silhouette } from './pictures.mjs';
 
 const DUCK = 35_647;
 
@@ -31,6 +31,8 @@ for (const isolated of [true, false]) {
     const mesh = silhouette(await site.pictureOf('mesh')).closed(6);
     const scan = silhouette(await site.pictureOf('points')).closed(6);
     assert.ok(overlap(mesh, scan) > 0.8, 'the mesh covers what the scan covers');
+    const [red, green, blue] = meanColor(await site.pictureOf('mesh'), mesh);
+    assert.ok(red > green && green > 2 * blue, `a yellow duck with an orange beak: ${[red, green, blue].map(Math.round)}`);
 
     assert.deepEqual(site.faults, []);
     const origin = new URL(site.page.url()).origin;
@@ -41,130 +43,159 @@ for (const isolated of [true, false]) {
   });
 }
 
-test('another share of the points gives exactly that many', { timeout: PATIENCE }, async (t) => {
-  const site = await withSample(t);
-  const before = await site.number('triangles');
-  await site.page.fill('#keep-field', '12.5');
-  await site.page.waitForSelector('#app[data-state="working"]');
-  await site.made();
-  assert.equal(await site.number('outputPoints'), Math.round(DUCK * 0.125));
-  assert.notEqual(await site.number('triangles'), before);
-
-  // Several steps of the slider in a row: only the last one counts.
-  await site.page.focus('#keep-slider');
-  for (let step = 0; step < 5; step++) await site.page.keyboard.press('PageUp');
-  await site.page.waitForSelector('#app[data-state="working"]');
-  await site.made();
-  const share = Number(await site.page.inputValue('#keep-field')) / 100;
-  assert.ok(share > 0.125, 'the slider moved the field');
-  assert.equal(await site.number('outputPoints'), Math.round(DUCK * share));
-  assert.deepEqual(site.faults, []);
-});
-
-test('a job can be cancelled and started again', { timeout: PATIENCE }, async (t) => {
-  const site = await withSample(t);
-  await site.page.click('[data-sample="pig"]');
-  await site.page.waitForSelector('#app[data-state="working"]', { timeout: PATIENCE });
-  await site.page.click('#cancel');
-  await site.page.waitForSelector('#app[data-state="ready"]', { timeout: 1000 });
-  assert.equal(await site.page.isVisible('#progress'), false);
-  assert.ok(Number.isNaN(await site.number('triangles')), 'no number is left from the scan before');
-  assert.ok(silhouette(await site.picture()).area > 0, 'the scan itself is shown');
-
-  await site.page.fill('#keep-field', '5');
-  await site.made();
-  assert.equal(await site.number('outputPoints'), Math.round((await site.number('inputPoints')) * 0.05));
-  assert.equal(await site.page.isVisible('#message'), false);
-  assert.deepEqual(site.faults, []);
-});
-
-test('bad files are explained, and the page goes on', { timeout: PATIENCE }, async (t) => {
-  const site = await withSample(t);
-  const triangles = await site.number('triangles');
-  const cut = Buffer.from('ply\nformat binary_little_endian 1.0\nelement vertex 1000\n'
-    + 'property float x\nproperty float y\nproperty float z\nend_header\n\0\0\0\0');
-  const cases = [
-    ['empty.ply', Buffer.alloc(0), 'bad-file|unknown-format|empty-cloud'],
-    ['cut.ply', cut, 'bad-file'],
-    ['holiday.jpg', Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16, 0x4a, 0x46, 0x49, 0x46]), 'unknown-format'],
-    ['broken.xyz', Buffer.from('0 0 0\n1 0 0\n0 1 zero\n'), 'bad-file'],
-  ];
-  for (const [name, bytes, codes] of cases) {
-    await site.drop(name, bytes);
-    await site.page.waitForSelector('#message:not([hidden])');
-    const text = await site.message();
-    assert.match(text, new RegExp(`\\[(${codes})\\]`), `${name}: ${text}`);
-    assert.ok(text.includes(name), 'the file is named');
-    assert.equal(await site.page.getAttribute('#app', 'data-state'), 'ready');
-    assert.equal(await site.number('triangles'), triangles, 'the duck is still there');
-    await site.page.click('#message-close');
-  }
-  assert.match(await site.page.innerText('#caption-title'), /duck/i);
-
-  // Three points on a line: they are shown, and it is said why there is no mesh.
-  await site.drop('line.xyz', Buffer.from(Array.from({ length: 50 }, (_, i) => `${i} 0 0`).join('\n')));
-  await site.page.waitForSelector('#message:not([hidden])');
-  assert.match(await site.message(), /\[(degenerate|too-few-points)\]/);
-  await site.settled();
-  assert.ok(await site.page.isDisabled('input[name="view"][value="mesh"]'));
-
-  await site.page.click('[data-sample="duck"]');
-  await site.made();
-  assert.equal(await site.number('triangles'), triangles, 'the duck again, as before');
-  assert.equal(await site.page.isVisible('#message'), false);
-  assert.deepEqual(site.faults, []);
-});
-
-test('keyboard alone', { timeout: PATIENCE }, async (t) => {
+test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
   const site = await withSample(t);
   const { page } = site;
-  for (const [key, view] of [['1', 'points'], ['2', 'reduced'], ['3', 'mesh']]) {
-    await page.keyboard.press(key);
-    assert.equal(await site.view(), view);
-  }
-  await page.focus('#canvas');
-  const front = await site.picture();
-  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
-  const side = await site.picture();
-  assert.ok(difference(front, side) > 0.05, 'the arrows turn the model');
-  await page.keyboard.press('-');
-  await page.keyboard.press('-');
-  assert.ok(silhouette(await site.picture()).area < 0.9 * silhouette(side).area, 'minus goes away');
-  await page.keyboard.press('f');
-  await site.settled();
-  const fitted = silhouette(await site.picture());
-  assert.ok(Math.max(fitted.box.width / fitted.width, fitted.box.height / fitted.height) > 0.7, 'F fits the view');
 
-  // Keys belong to the field while one types in it.
-  await page.focus('#keep-field');
-  await page.keyboard.press('1');
-  assert.equal(await site.view(), 'mesh');
+  await t.test('keyboard alone', async () => {
+    for (const [key, view] of [['1', 'points'], ['2', 'reduced'], ['3', 'mesh']]) {
+      await page.keyboard.press(key);
+      assert.equal(await site.view(), view);
+    }
+    await page.focus('#canvas');
+    const front = await site.picture();
+    for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+    const side = await site.picture();
+    assert.ok(difference(front, side) > 0.05, 'the arrows turn the model');
+    await page.keyboard.press('-');
+    await page.keyboard.press('-');
+    assert.ok(silhouette(await site.picture()).area < 0.9 * silhouette(side).area, 'minus goes away');
+    await page.keyboard.press('f');
+    await site.settled();
+    const fitted = silhouette(await site.picture());
+    assert.ok(Math.max(fitted.box.width / fitted.width, fitted.box.height / fitted.height) > 0.7, 'F fits the view');
 
-  // Every control is reached with Tab.
-  const reached = new Set();
-  await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
-  for (let k = 0; k < 30; k++) {
-    await page.keyboard.press('Tab');
-    reached.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.getAttribute('name')));
-  }
-  for (const id of ['choose', 'canvas', 'fit', 'up', 'view', 'duck', 'pig', 'part', 'keep-slider', 'keep-field', 'download-mesh', 'download-reduced']) {
-    assert.ok(reached.has(id), `${id} is reached with Tab`);
-  }
-});
+    // Keys belong to the field while one types in it.
+    await page.focus('#keep-field');
+    await page.keyboard.press('1');
+    assert.equal(await site.view(), 'mesh');
 
-test('downloads hold what the numbers say', { timeout: PATIENCE }, async (t) => {
-  const site = await withSample(t);
-  for (const [button, pattern, number] of [
-    ['#download-reduced', /element vertex (\d+)/, 'outputPoints'],
-    ['#download-mesh', /element face (\d+)/, 'triangles'],
-  ]) {
-    const saved = site.page.waitForEvent('download');
-    await site.page.click(button);
-    const download = await saved;
-    assert.match(download.suggestedFilename(), /^duck-.*\.ply$/);
-    const header = (await readFile(await download.path())).toString('latin1').slice(0, 2000);
-    assert.equal(Number(pattern.exec(header)?.[1]), await site.number(number));
-  }
+    // Every control is reached with Tab.
+    const reached = new Set();
+    await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
+    for (let k = 0; k < 30; k++) {
+      await page.keyboard.press('Tab');
+      reached.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.getAttribute('name')));
+    }
+    for (const id of ['choose', 'canvas', 'fit', 'up', 'view', 'duck', 'pig', 'part', 'keep-slider', 'keep-field', 'download-mesh', 'download-reduced']) {
+      assert.ok(reached.has(id), `${id} is reached with Tab`);
+    }
+  });
+
+  await t.test('downloads hold what the numbers say', async () => {
+    for (const [button, pattern, number] of [
+      ['#download-reduced', /element vertex (\d+)/, 'outputPoints'],
+      ['#download-mesh', /element face (\d+)/, 'triangles'],
+    ]) {
+      const saved = page.waitForEvent('download');
+      await page.click(button);
+      const download = await saved;
+      assert.match(download.suggestedFilename(), /^duck-.*\.ply$/);
+      const header = (await readFile(await download.path())).toString('latin1').slice(0, 2000);
+      assert.equal(Number(pattern.exec(header)?.[1]), await site.number(number));
+    }
+  });
+
+  await t.test('a dragged file is shown where to go', async () => {
+    const drag = (type) => page.evaluate((kind) => {
+      const data = new DataTransfer();
+      data.items.add(new File(['0 0 0'], 'scan.xyz'));
+      document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, type);
+    await drag('dragenter');
+    assert.ok(await page.isVisible('#veil'));
+    await drag('dragleave');
+    assert.equal(await page.isVisible('#veil'), false);
+  });
+
+  await t.test('the picture comes back when the graphics context was lost', async () => {
+    const before = await site.picture();
+    await page.evaluate(async () => {
+      const canvas = document.querySelector('canvas');
+      const context = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+      const event = (type) => new Promise((heard) => canvas.addEventListener(type, heard, { once: true }));
+      const lost = event('webglcontextlost');
+      context.loseContext();
+      await lost;
+      const restored = event('webglcontextrestored');
+      setTimeout(() => context.restoreContext());
+      await restored;
+    });
+    await site.settled();
+    assert.ok(difference(before, await site.picture()) < 0.001);
+  });
+
+  await t.test('another share of the points gives exactly that many', async () => {
+    const before = await site.number('triangles');
+    await page.fill('#keep-field', '12.5');
+    await page.waitForSelector('#app[data-state="working"]');
+    await site.made();
+    assert.equal(await site.number('outputPoints'), Math.round(DUCK * 0.125));
+    assert.notEqual(await site.number('triangles'), before);
+
+    // Several steps of the slider in a row: only the last one counts.
+    await page.focus('#keep-slider');
+    for (let step = 0; step < 5; step++) await page.keyboard.press('PageUp');
+    await page.waitForSelector('#app[data-state="working"]');
+    await site.made();
+    const share = Number(await page.inputValue('#keep-field')) / 100;
+    assert.ok(share > 0.125, 'the slider moved the field');
+    assert.equal(await site.number('outputPoints'), Math.round(DUCK * share));
+  });
+
+  await t.test('a job can be cancelled and started again', async () => {
+    await page.click('[data-sample="pig"]');
+    await page.waitForSelector('#app[data-state="working"]', { timeout: PATIENCE });
+    await page.click('#cancel');
+    await page.waitForSelector('#app[data-state="ready"]', { timeout: 1000 });
+    assert.equal(await page.isVisible('#progress'), false);
+    assert.ok(Number.isNaN(await site.number('triangles')), 'no number is left from the scan before');
+    assert.ok(silhouette(await site.picture()).area > 0, 'the scan itself is shown');
+
+    await page.fill('#keep-field', '5');
+    await site.made();
+    assert.equal(await site.number('outputPoints'), Math.round((await site.number('inputPoints')) * 0.05));
+    assert.equal(await page.isVisible('#message'), false);
+  });
+
+  await t.test('bad files are explained, and the page goes on', async () => {
+    const triangles = await site.number('triangles');
+    const title = await page.innerText('#caption-title');
+    const cut = Buffer.from('ply\nformat binary_little_endian 1.0\nelement vertex 1000\n'
+      + 'property float x\nproperty float y\nproperty float z\nend_header\n\0\0\0\0');
+    const cases = [
+      ['empty.ply', Buffer.alloc(0), 'bad-file|unknown-format|empty-cloud'],
+      ['cut.ply', cut, 'bad-file'],
+      ['holiday.jpg', Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16, 0x4a, 0x46, 0x49, 0x46]), 'unknown-format'],
+      ['broken.xyz', Buffer.from('0 0 0\n1 0 0\n0 1 zero\n'), 'bad-file'],
+    ];
+    for (const [name, bytes, codes] of cases) {
+      await site.drop(name, bytes);
+      await page.waitForSelector('#message:not([hidden])');
+      const text = await site.message();
+      assert.match(text, new RegExp(`\\[(${codes})\\]`), `${name}: ${text}`);
+      assert.ok(text.includes(name), 'the file is named');
+      assert.equal(await page.getAttribute('#app', 'data-state'), 'ready');
+      assert.equal(await site.number('triangles'), triangles, 'what was there is still there');
+      await page.click('#message-close');
+    }
+    assert.equal(await page.innerText('#caption-title'), title);
+
+    // Three points on a line: they are shown, and it is said why there is no mesh.
+    await site.drop('line.xyz', Buffer.from(Array.from({ length: 50 }, (_, i) => `${i} 0 0`).join('\n')));
+    await page.waitForSelector('#message:not([hidden])');
+    assert.match(await site.message(), /\[(degenerate|too-few-points)\]/);
+    await site.settled();
+    assert.ok(await page.isDisabled('input[name="view"][value="mesh"]'));
+
+    await page.click('[data-sample="duck"]');
+    await site.made();
+    assert.equal(await site.number('inputPoints'), DUCK, 'a good scan after all');
+    assert.ok((await site.number('triangles')) > 0);
+    assert.equal(await page.isVisible('#message'), false);
+  });
+
+  assert.deepEqual(site.faults, []);
 });
 
 for (const colorScheme of ['light', 'dark']) {

@@ -90,14 +90,23 @@ class Mask {
     return down;
   }
 
-  /** The inside of the box, stretched to a square: comparable across sizes. */
+  /**
+   * The same shape at a standard place and size, comparable across pictures: its centre of mass in the middle, its
+   * radius of gyration a fixed share. A stray pixel moves neither.
+   */
   normalized(size = 128) {
-    const { left, top, width, height } = this.box;
+    const pixels = [];
+    this.bits.forEach((bit, i) => bit && pixels.push([i % this.width, Math.floor(i / this.width)]));
+    const mean = [0, 1].map((axis) => pixels.reduce((sum, pixel) => sum + pixel[axis], 0) / pixels.length);
+    const spread = Math.sqrt(
+      pixels.reduce((sum, [x, y]) => sum + (x - mean[0]) ** 2 + (y - mean[1]) ** 2, 0) / pixels.length);
+    const scale = (4.5 * spread) / size;
     const out = new Mask(size, size);
     for (let y = 0; y < size; y++) {
       for (let x = 0; x < size; x++) {
-        const [fromX, fromY] = [left + Math.floor((x + 0.5) * width / size), top + Math.floor((y + 0.5) * height / size)];
-        out.bits[y * size + x] = this.bits[fromY * this.width + fromX];
+        const [fromX, fromY] = [x, y].map((value, axis) => Math.round(mean[axis] + (value + 0.5 - size / 2) * scale));
+        const inside = fromX >= 0 && fromX < this.width && fromY >= 0 && fromY < this.height;
+        out.bits[y * size + x] = inside ? this.bits[fromY * this.width + fromX] : 0;
       }
     }
     return out;
@@ -128,6 +137,14 @@ export function overlap(a, b) {
     either += bit | b.bits[i];
   });
   return both / either;
+}
+
+/** Mean red, green and blue, 0-255, of the pixels under the mask. */
+export function meanColor(png, mask) {
+  const { channels, data } = decodePng(png);
+  const sum = [0, 0, 0];
+  mask.bits.forEach((bit, i) => bit && sum.forEach((_, c) => (sum[c] += data[i * channels + c])));
+  return sum.map((value) => value / mask.area);
 }
 
 /** Share of pixels that differ visibly between two pictures. */

@@ -6,7 +6,10 @@ import { PATIENCE, sharedFile, start } from './browser.mjs';
 import { difference, expectedSilhouette, overlap, silhouette } from './pictures.mjs';
 import { mergedBunny, parseOni, parsePcd, parseXyz, toPly } from './scans.mjs';
 
+/** Overlap of two silhouettes that show the same object. */
 const SAME_SHAPE = 0.8;
+/** The same for a scan so sparse that its outline is open between the points: the neck of the mask is one ring. */
+const SAME_SPARSE_SHAPE = 0.7;
 
 /** What the page keeps of its own accord: a third, but at least 2,000 and at most 60,000 points. */
 function keptAtFirst(count) {
@@ -14,14 +17,14 @@ function keptAtFirst(count) {
 }
 
 /** What must hold after any scan was opened: numbers that fit, three different pictures of the same object. */
-async function checkResult(site, points) {
+async function checkResult(t, site, name, points, sameShape = SAME_SHAPE) {
   assert.equal(await site.number('inputPoints'), points.length);
   assert.equal(await site.number('outputPoints'), keptAtFirst(points.length));
   assert.ok((await site.number('triangles')) > points.length / 20, 'the mesh has triangles');
   assert.ok((await site.number('errorMeanShare')) < 0.01, 'the mesh is near the points');
 
   const pictures = {};
-  for (const view of ['points', 'reduced', 'mesh']) pictures[view] = await site.pictureOf(view);
+  for (const view of ['points', 'reduced', 'mesh']) pictures[view] = await site.pictureOf(view, name);
   assert.ok(difference(pictures.points, pictures.reduced) > 0.01, 'scan and reduced points look different');
   assert.ok(difference(pictures.reduced, pictures.mesh) > 0.01, 'reduced points and mesh look different');
 
@@ -33,8 +36,9 @@ async function checkResult(site, points) {
   assert.ok(mesh.area > 0.05 * mesh.width * mesh.height, 'the mesh fills a good part of the picture');
   const drawn = overlap(scan, mesh);
   const expected = overlap(expectedSilhouette(points).closed(Math.max(4, gap)).normalized(), mesh.normalized());
-  assert.ok(drawn > SAME_SHAPE, `scan and mesh cover the same pixels: ${drawn.toFixed(3)}`);
-  assert.ok(expected > SAME_SHAPE, `the mesh looks like the projected points: ${expected.toFixed(3)}`);
+  t.diagnostic(`${name}: overlap of the mesh with the scan ${drawn.toFixed(3)}, with the projected points ${expected.toFixed(3)}`);
+  assert.ok(drawn > sameShape, `scan and mesh cover the same pixels: ${drawn.toFixed(3)}`);
+  assert.ok(expected > sameShape, `the mesh looks like the projected points: ${expected.toFixed(3)}`);
 }
 
 test('real scans', { timeout: 4 * PATIENCE }, async (t) => {
@@ -42,42 +46,38 @@ test('real scans', { timeout: 4 * PATIENCE }, async (t) => {
   const site = await browser.open();
   await site.made();
 
-  await t.test('kitten.xyz, dropped', async () => {
+  await t.test('kitten.xyz, dropped', async (t) => {
     const file = await sharedFile('scans/kitten.xyz');
     if (!file) return;
     await site.drop('kitten.xyz', file);
-    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'kitten.xyz');
-    await site.made();
-    await checkResult(site, parseXyz(file.toString()));
+    await site.opened('kitten.xyz');
+    await checkResult(t, site, 'kitten', parseXyz(file.toString()));
   });
 
-  await t.test('oni.ply, chosen with the button', async () => {
+  await t.test('oni.ply, chosen with the button', async (t) => {
     const file = await sharedFile('scans/oni.ply');
     if (!file) return;
     await site.choose('oni.ply', file);
-    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'oni.ply');
-    await site.made();
-    await checkResult(site, parseOni(file));
+    await site.opened('oni.ply');
+    await checkResult(t, site, 'oni', parseOni(file), SAME_SPARSE_SHAPE);
   });
 
-  await t.test('Zaghetto, converted to PLY', async () => {
+  await t.test('Zaghetto, converted to PLY', async (t) => {
     const file = await sharedFile('scans/Zaghetto.pcd');
     if (!file) return;
     const points = parsePcd(file);
     await site.drop('zaghetto.ply', toPly(points));
-    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'zaghetto.ply');
-    await site.made();
-    await checkResult(site, points);
+    await site.opened('zaghetto.ply');
+    await checkResult(t, site, 'zaghetto', points);
   });
 
-  await t.test('the ten raw scans of the bunny, merged', async () => {
+  await t.test('the ten raw scans of the bunny, merged', async (t) => {
     const points = await mergedBunny();
     if (!points) return;
     assert.equal(points.length, 362_272);
     await site.drop('bunny.ply', toPly(points));
-    await site.page.waitForFunction(() => document.querySelector('#caption-title').textContent === 'bunny.ply');
-    await site.made();
-    await checkResult(site, points);
+    await site.opened('bunny.ply');
+    await checkResult(t, site, 'bunny', points);
   });
 
   assert.deepEqual(site.faults, []);

@@ -90,6 +90,7 @@ export class App {
       3: () => this.#chooseView('mesh'),
       f: () => orbit?.fit(),
       u: () => this.#turnUp(),
+      Escape: () => this.#message.hide(),
       '+': () => orbit?.zoom(1 / 1.2),
       '=': () => orbit?.zoom(1 / 1.2),
       '-': () => orbit?.zoom(1.2),

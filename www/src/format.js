@@ -2,14 +2,19 @@
 
 const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
 const short = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
-const tiny = new Intl.NumberFormat('en', { maximumSignificantDigits: 3, notation: 'scientific' });
 
 export const count = (/** @type {number} */ n) => whole.format(n);
 
-/** Three digits, in scientific notation where zeros would crowd them out. */
+/** Three digits, with a power of ten where zeros would crowd them out. */
 export function length(/** @type {number} */ value) {
   const size = Math.abs(value);
-  return size !== 0 && (size < 1e-4 || size >= 1e7) ? tiny.format(value) : short.format(value);
+  if (size === 0 || (size >= 1e-4 && size < 1e7)) return short.format(value);
+  const [digits, exponent] = value.toExponential(2).split('e');
+  return `${digits} × 10${superscript(exponent)}`;
+}
+
+function superscript(/** @type {string} */ digits) {
+  return digits.replace('+', '').replace('-', '⁻').replace(/\d/g, (digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)]);
 }
 
 /** A fraction as a percentage with two digits. */

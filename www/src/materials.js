@@ -13,7 +13,7 @@ export function meshMaterial({ colored }) {
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <normal_fragment_begin>', /* glsl */ `
         vec3 normal = normalize(vNormal);
-        bool inner = !gl_FrontFacing && dot(normal, normalize(vViewPosition)) < -0.15;
+        bool inner = !gl_FrontFacing && dot(normal, normalize(vViewPosition)) < -0.06;
         if (inner) normal = -normal;
         vec3 nonPerturbedNormal = normal;`)
       .replace('#include <opaque_fragment>', /* glsl */ `

@@ -70,9 +70,6 @@ export class MessageCard {
   constructor(/** @type {() => void} */ choose) {
     this.#choose.addEventListener('click', choose);
     byId('message-close', HTMLButtonElement).addEventListener('click', () => this.hide());
-    this.#box.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.hide();
-    });
   }
 
   /** @param {any} error  @param {string} about  what the person had opened */

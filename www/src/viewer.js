@@ -39,11 +39,17 @@ export class Viewer {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.autoClear = false;
-    this.#renderer.setClearColor(0, 0);
     this.#scene.add(this.#root);
     this.#orbit = new Orbit(this.#camera, this.#root, canvas, () => this.#ask());
     new ResizeObserver(() => this.#resize()).observe(canvas);
-    canvas.addEventListener('webglcontextrestored', () => this.#ask());
+    canvas.addEventListener('webglcontextrestored', () => this.#clear());
+    this.#clear();
+  }
+
+  /** The page's own background shows through. A restored context has forgotten that, so it is said again. */
+  #clear() {
+    this.#renderer.setClearColor(0, 0);
+    this.#ask();
   }
 
   get orbit() {
