@@ -113,7 +113,13 @@ test('progress goes through the stages, never back, and ends at 1', async (t) =>
   }
 });
 
-test('an abort ends a worker within 100 ms; the next call has a fresh one of the same module', async (t) => {
+test('wasm is compiled once, however many engines have it', async () => {
+  const [first, second, other] = await Promise.all(['single', 'single', 'threads'].map((build) => platform.compile(build)));
+  assert.equal(first, second);
+  assert.notEqual(first, other);
+});
+
+test('an abort ends a worker within 100 ms; the next call has a fresh one', async (t) => {
   for (const threads of [1, 2]) {
     const { made, api } = counting();
     const engine = await api.createEngine({ threads, worker: true });
@@ -198,7 +204,7 @@ test('a worker that dies in the middle rejects its call, whichever it was, and t
   }
 });
 
-test('dispose ends the call under way and the workers', async () => {
+test('dispose ends the workers, and the call under way', async () => {
   const ended = new Set();
   const { api } = counting({
     startWorker() {
@@ -206,6 +212,10 @@ test('dispose ends the call under way and the workers', async () => {
       return { ...worker, terminate: () => (ended.add(worker), worker.terminate()) };
     },
   });
+  const idle = await api.createEngine({ threads: 1, worker: true });
+  await idle.dispose();
+  assert.equal(ended.size, 1);
+  ended.clear();
   const engine = await api.createEngine({ threads: 2 });
   const running = rejection(engine.reconstruct(large));
   await new Promise((resolve) => setTimeout(resolve, 200));
