@@ -26,7 +26,7 @@ Usage: cargo xtask <command> [options]
   bench [ARGS…]         the benchmarks, after a build; ARGS go to tests/bench/bench.mjs
   setup                 install whatever the other commands need, and nothing else
 
-Environment: CHROMIUM, CHROMEDRIVER and GECKODRIVER name programs to use instead of those found;
+Environment: CHROMIUM, CHROMEDRIVER, FIREFOX and GECKODRIVER name programs to use instead of those found;
 RUSTUP_AUTO_INSTALL=0 keeps rustup from downloading.
 ";
 

@@ -19,6 +19,7 @@ pub fn everything() -> Result<()> {
     }
     chromium()?;
     chromedriver()?;
+    firefox()?;
     geckodriver()?;
     Ok(())
 }
@@ -170,20 +171,28 @@ pub fn chromedriver() -> Result<PathBuf> {
     )
 }
 
+/// The other browser: `FIREFOX`, or what is found, or Debian's.
+pub fn firefox() -> Result<PathBuf> {
+    let found = || {
+        let mac = PathBuf::from("/Applications/Firefox.app/Contents/MacOS/firefox");
+        named("FIREFOX")
+            .or_else(|| find("firefox-esr"))
+            .or_else(|| find("firefox"))
+            .or(Some(mac).filter(|path| path.is_file()))
+    };
+    found_or_apt(
+        found,
+        "firefox-esr",
+        "Firefox",
+        "install Firefox, or set FIREFOX",
+    )
+}
+
 /// Mozilla releases no Debian package of it, and its builds are on a site that not every machine reaches.
 const GECKODRIVER: &str = "geckodriver@0.37.1";
 
-/// The driver for wasm tests in Firefox, and Firefox: `GECKODRIVER`, or what is found, or built.
+/// The driver for wasm tests in Firefox: `GECKODRIVER`, or what is found, or built.
 pub fn geckodriver() -> Result<PathBuf> {
-    let firefox = || {
-        find("firefox").or_else(|| find("firefox-esr")).or_else(|| {
-            Some(PathBuf::from(
-                "/Applications/Firefox.app/Contents/MacOS/firefox",
-            ))
-            .filter(|path| path.is_file())
-        })
-    };
-    found_or_apt(firefox, "firefox-esr", "Firefox", "install Firefox")?;
     let own = root().join("target/tools");
     let built = own
         .join("bin")

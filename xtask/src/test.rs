@@ -58,10 +58,12 @@ pub fn selection(options: &[String]) -> Result<Vec<Check>> {
 /// Runs every check, also after one has failed, so that one run shows all that is wrong.
 pub fn test(checks: &[Check]) -> Result<()> {
     let mut log = Log::default();
-    if checks.iter().any(|check| check.needs_package()) {
-        log.step("build", build::build);
-    }
+    let mut built = false;
     for &check in checks {
+        if check.needs_package() && !built {
+            log.step("build", build::build);
+            built = true;
+        }
         match check {
             Check::Fmt => log.step("fmt", fmt),
             Check::Clippy => log.step("clippy", clippy),
@@ -159,6 +161,8 @@ fn native() -> Result<()> {
 fn wasm(log: &mut Log) {
     let mut ready = None;
     log.step("wasm: set up", || {
+        setup::chromium()?;
+        setup::firefox()?;
         ready = Some((
             toolchain::wasm()?,
             setup::wasm_tools()?,
@@ -248,7 +252,9 @@ fn node_tests(folder: &str) -> Result<()> {
         return Err(format!("{folder} holds no *.test.mjs"));
     }
     let mut tests = command("node");
-    tests.env("CHROMIUM", setup::chromium()?);
+    tests
+        .env("CHROMIUM", setup::chromium()?)
+        .env("FIREFOX", setup::firefox()?);
     tests.args(["--test", "--test-reporter=spec"]).args(files);
     run(&mut tests, &format!("tests in {folder} failed, see above"))
 }
