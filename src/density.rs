@@ -27,6 +27,10 @@ const FINEST: f32 = 0.577;
 const COARSEST: f32 = 1.155;
 /// Largest growth of the spacing per length along the surface.
 const GRADING: f32 = 0.2;
+/// Largest spacing with a tolerance as the target, a fraction of the diagonal: a plane needs more than its corners.
+const WIDEST: f64 = 0.05;
+/// Smallest spacing, about the resolution of the octree's keys.
+const SMALLEST: f32 = 1e-6;
 /// Points whose curvature is averaged.
 const GROUP: usize = 12;
 /// Groups that limit each other's spacing: a ring around each.
@@ -44,24 +48,45 @@ pub struct Density {
 impl Density {
     /// The density of `count` ≤ n points. `curvature_weight` is α.
     pub fn new(tree: &Octree, features: &Features, count: usize, curvature_weight: f64) -> Density {
-        let relative = relative_spacing(tree, features, curvature_weight);
-        let deserved: Vec<f64> = features
-            .spacing
-            .iter()
-            .zip(&relative)
-            .map(|(&s, &h)| f64::from(s / h) * f64::from(s / h))
-            .collect();
+        let groups = Groups::new(tree, features);
+        let wanted = groups.curvature_spacing(curvature_weight);
+        let relative = groups.spread(tree, wanted);
+        let deserved: Vec<f64> = deserved(features, &relative).collect();
         let scale = scale_to(&deserved, count);
+        let unit = 1.0 / scale.sqrt();
         Density {
             spacing: relative
                 .iter()
-                .map(|&h| (f64::from(h) / scale.sqrt()) as f32)
+                .map(|&h| (f64::from(h) * unit) as f32)
                 .collect(),
             share: deserved
                 .iter()
                 .map(|&d| (d * scale).min(1.0) as f32)
                 .collect(),
         }
+    }
+
+    /// The density that keeps a piecewise linear surface within `tolerance`: a chord of length h over curvature κ is off by
+    /// κh²/8, so h = √(8 tolerance/κ), at most [`WIDEST`].
+    pub fn within(tree: &Octree, features: &Features, tolerance: f64) -> Density {
+        let groups = Groups::new(tree, features);
+        let reach = |k: &f64| {
+            (8.0 * tolerance / k.max(f64::MIN_POSITIVE))
+                .sqrt()
+                .min(WIDEST) as f32
+        };
+        let wanted = groups.curvature.iter().map(reach).collect();
+        let spacing = groups.spread(tree, wanted);
+        let share = deserved(features, &spacing)
+            .map(|d| d.min(1.0) as f32)
+            .collect();
+        Density { spacing, share }
+    }
+
+    /// The number of reduced points that the shares add up to, rounded up.
+    pub fn count(&self) -> usize {
+        let total: f64 = self.share.iter().map(|&s| f64::from(s)).sum();
+        (total.ceil() as usize).clamp(1, self.share.len())
     }
 
     /// The expected number of centres in each cell.
@@ -74,12 +99,18 @@ impl Density {
 /// Whole numbers that follow `shares`: their sums along the cells, rounded. No cell gets more than its points; together
 /// they are exactly `total` (at most the number of all points).
 pub fn quotas(shares: &[f64], cells: &[Range<usize>], total: usize) -> Vec<usize> {
-    let scale = total as f64 / shares.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let all: f64 = shares.iter().sum();
+    let points: usize = cells.iter().map(|c| c.len()).sum();
     let (mut sum, mut given) = (0.0, 0);
     let mut quotas = Vec::with_capacity(cells.len());
     for (share, cell) in shares.iter().zip(cells) {
-        sum += share * scale;
-        let quota = (sum.round() as usize)
+        // Where all points are equal there is no area to share.
+        sum += if all > 0.0 {
+            share / all
+        } else {
+            cell.len() as f64 / points as f64
+        };
+        let quota = ((sum * total as f64).round() as usize)
             .min(total)
             .saturating_sub(given)
             .min(cell.len());
@@ -118,58 +149,87 @@ fn scale_to(deserved: &[f64], count: usize) -> f64 {
     scale
 }
 
-/// Steps 1-3: the spacing at every point, its unit still free.
-fn relative_spacing(tree: &Octree, features: &Features, alpha: f64) -> Vec<f32> {
-    let groups = tree.cut(|node| node.range().len() <= GROUP);
-    let centers: Vec<Vec3> = groups
-        .iter()
-        .map(|g| mean(&tree.points[g.clone()]))
-        .collect();
-    let mut spacing = curvature_spacing(features, &groups, alpha);
-    let rings = rings(&centers);
-    limit_gradient(&mut spacing, &centers, &rings);
-
-    let mut relative = vec![0.0; tree.points.len()];
-    for (range, ring) in groups.iter().zip(&rings) {
-        for k in range.clone() {
-            let p = tree.points[k];
-            relative[k] = ring
-                .iter()
-                .map(|&j| spacing[j as usize] + GRADING * p.distance(centers[j as usize]))
-                .fold(f32::INFINITY, f32::min);
-        }
-    }
-    relative
+/// Reduced points of spacing h that the patch of every point deserves: its area over h².
+fn deserved<'a>(features: &'a Features, spacing: &'a [f32]) -> impl Iterator<Item = f64> + 'a {
+    let patch = features.spacing.iter().zip(spacing);
+    patch.map(|(&s, &h)| (f64::from(s) / f64::from(h)).powi(2))
 }
 
-/// Steps 1 and 2 for every group. The result's unit is that of `features.spacing`.
-fn curvature_spacing(features: &Features, groups: &[Range<usize>], alpha: f64) -> Vec<f32> {
-    let of = |v: &[f32], g: &Range<usize>| -> f64 {
-        v[g.clone()].iter().map(|&x| f64::from(x)).sum::<f64>() / g.len() as f64
-    };
-    let area: Vec<f64> = groups
-        .iter()
-        .map(|g| g.len() as f64 * of(&features.spacing, g).powi(2))
-        .collect();
-    let total = area.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let unit = (total / features.spacing.len() as f64).sqrt();
-    let curvature: Vec<f64> = groups.iter().map(|g| of(&features.curvature, g)).collect();
-    let typical = curvature.iter().zip(&area).map(|(k, a)| k * a).sum::<f64>() / total;
-    if typical == 0.0 || alpha == 0.0 || unit == 0.0 {
-        return vec![unit.max(f64::from(f32::MIN_POSITIVE)) as f32; groups.len()];
-    }
-    // h = ρ^(-1/2), then in units of its mean over the surface, and bounded.
-    let mut spacing: Vec<f64> = curvature
-        .iter()
-        .map(|k| libm::pow((k / typical).max(1e-6), -0.5 * alpha))
-        .collect();
-    for _ in 0..2 {
-        let mean = spacing.iter().zip(&area).map(|(h, a)| h * a).sum::<f64>() / total;
-        for h in &mut spacing {
-            *h = (*h / mean).clamp(f64::from(FINEST), f64::from(COARSEST));
+/// Neighbouring points, a dozen at a time.
+struct Groups {
+    ranges: Vec<Range<usize>>,
+    centers: Vec<Vec3>,
+    curvature: Vec<f64>,
+    area: Vec<f64>,
+}
+
+impl Groups {
+    fn new(tree: &Octree, features: &Features) -> Groups {
+        let ranges = tree.cut(|node| node.range().len() <= GROUP);
+        let mean = |v: &[f32], g: &Range<usize>| -> f64 {
+            v[g.clone()].iter().map(|&x| f64::from(x)).sum::<f64>() / g.len() as f64
+        };
+        let center =
+            |g: &Range<usize>| tree.points[g.clone()].iter().sum::<Vec3>() / g.len() as f32;
+        Groups {
+            centers: ranges.iter().map(center).collect(),
+            curvature: ranges
+                .iter()
+                .map(|g| mean(&features.curvature, g))
+                .collect(),
+            area: ranges
+                .iter()
+                .map(|g| g.len() as f64 * mean(&features.spacing, g).powi(2))
+                .collect(),
+            ranges,
         }
     }
-    spacing.iter().map(|h| (h * unit) as f32).collect()
+
+    /// Steps 1 and 2. The result's unit is free.
+    fn curvature_spacing(&self, alpha: f64) -> Vec<f32> {
+        let total = self.area.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let mean = |values: &[f64]| {
+            values
+                .iter()
+                .zip(&self.area)
+                .map(|(v, a)| v * a)
+                .sum::<f64>()
+                / total
+        };
+        let unit = (total / self.area.len() as f64).sqrt();
+        let typical = mean(&self.curvature);
+        if typical == 0.0 || alpha == 0.0 {
+            return vec![unit as f32; self.area.len()];
+        }
+        // h = ρ^(-1/2), then in units of its mean over the surface, and bounded.
+        let asked = |k: &f64| libm::pow((k / typical).max(1e-6), -0.5 * alpha);
+        let mut spacing: Vec<f64> = self.curvature.iter().map(asked).collect();
+        for _ in 0..2 {
+            let mean = mean(&spacing);
+            for h in &mut spacing {
+                *h = (*h / mean).clamp(f64::from(FINEST), f64::from(COARSEST));
+            }
+        }
+        spacing.iter().map(|h| (h * unit) as f32).collect()
+    }
+
+    /// Step 3, then from groups to points.
+    fn spread(&self, tree: &Octree, mut wanted: Vec<f32>) -> Vec<f32> {
+        let rings = rings(&self.centers);
+        limit_gradient(&mut wanted, &self.centers, &rings);
+        let mut spacing = vec![0.0; tree.points.len()];
+        for (range, ring) in self.ranges.iter().zip(&rings) {
+            for k in range.clone() {
+                let p = tree.points[k];
+                let limit =
+                    |&j: &u32| wanted[j as usize] + GRADING * p.distance(self.centers[j as usize]);
+                let least = ring.iter().map(limit).fold(f32::INFINITY, f32::min);
+                // Where all points are equal any spacing will do, but not none.
+                spacing[k] = least.max(SMALLEST);
+            }
+        }
+        spacing
+    }
 }
 
 /// The groups nearest to each group, itself first.
@@ -210,8 +270,4 @@ fn limit_gradient(spacing: &mut [f32], centers: &[Vec3], rings: &[Vec<u32>]) {
             }
         }
     }
-}
-
-fn mean(points: &[Vec3]) -> Vec3 {
-    points.iter().sum::<Vec3>() / points.len() as f32
 }

@@ -75,6 +75,33 @@ impl Features {
     /// Measures them. Cost: one fit a point, and where there is noise two passes over the neighbours; about
     /// log n + 100 steps a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+        // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
+        let copies: Vec<Range<usize>> = copies(&tree.points);
+        if copies.len() == tree.points.len() {
+            return Features::measure_distinct(tree, progress);
+        }
+        let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
+        let one = Features::measure_distinct(&Octree::build(&distinct), progress)?;
+        let each = || {
+            copies
+                .iter()
+                .enumerate()
+                .flat_map(|(i, c)| c.clone().map(move |_| (i, c.len())))
+        };
+        let spread = |v: &[f32]| each().map(|(i, _)| v[i]).collect::<Vec<f32>>();
+        Ok(Features {
+            spacing: each()
+                .map(|(i, n)| one.spacing[i] / (n as f32).sqrt())
+                .collect(),
+            normals: each().map(|(i, _)| one.normals[i]).collect(),
+            curvature: spread(&one.curvature),
+            variation: spread(&one.variation),
+            residual: spread(&one.residual),
+            noise: one.noise,
+        })
+    }
+
+    fn measure_distinct(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         let groups = tree.cut(|node| node.range().len() <= GROUP);
         let scales = scales(tree, &groups);
         let mut part = Part {
@@ -135,6 +162,18 @@ impl Features {
     pub fn median_spacing(&self) -> f32 {
         median(self.spacing.clone())
     }
+}
+
+/// Runs of equal points. In Morton order copies follow each other, unless another point shares their cell of 2⁻²¹.
+fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::with_capacity(points.len());
+    for (i, p) in points.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if points[run.start] == *p => run.end = i + 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
 }
 
 /// A part of a stage's progress.

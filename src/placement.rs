@@ -13,7 +13,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::clusters::{SHARES, Shares};
 use crate::features::Features;
 use crate::linalg::sym_eigen;
-use crate::octree::Octree;
+use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::Placement;
 
@@ -162,8 +162,8 @@ impl Sums {
         };
         let spacing = self.area.sqrt();
         let position = match placement {
-            Placement::Center | Placement::Sample => center.as_dvec3(),
-            Placement::Mesh | Placement::Implicit => {
+            Placement::Center => center.as_dvec3(),
+            Placement::Mesh | Placement::Implicit | Placement::Sample => {
                 let [xx, xy, xz, yy, yz, zz] = tensor;
                 let a = DMat3::from_cols(
                     DVec3::new(xx + TAU, xy, xz),
@@ -190,6 +190,54 @@ impl Sums {
             variation: (self.variation / self.membership) as f32,
         }
     }
+}
+
+/// Moves every placed point to an input point, no two to the same, and returns which (in the octree's order): the nearest
+/// of those that belong to the centre most, or, for a centre to which none does, the nearest that nobody took.
+pub fn snap(
+    tree: &Octree,
+    shares: &[Shares],
+    members: &Members,
+    placed: &mut [Placed],
+) -> Vec<u32> {
+    let away = |k: u32, p: Vec3| tree.points[k as usize].distance_squared(p);
+    let own = |i: usize| {
+        let mine = members.of(i).iter().map(|&(k, _)| k);
+        mine.filter(move |&k| shares[k as usize].center[0] as usize == i)
+    };
+    let first: Vec<Option<u32>> = (0..placed.len())
+        .map(|i| {
+            let p = placed[i].position;
+            own(i).min_by(|&a, &b| away(a, p).total_cmp(&away(b, p)).then(a.cmp(&b)))
+        })
+        .collect();
+    let mut taken = vec![false; tree.points.len()];
+    for k in first.iter().flatten() {
+        taken[*k as usize] = true;
+    }
+    let mut found: Vec<Neighbor> = Vec::new();
+    let mut free = |p: Vec3| {
+        let mut k = 16;
+        loop {
+            tree.knn(p, k, &mut found);
+            let next = found.iter().map(|n| n.index).find(|&j| !taken[j as usize]);
+            if let Some(j) = next {
+                taken[j as usize] = true;
+                return j;
+            }
+            // There are no more centres than points, so a free one turns up.
+            k *= 4;
+        }
+    };
+    let chosen: Vec<u32> = first
+        .into_iter()
+        .zip(placed.iter())
+        .map(|(k, p)| k.unwrap_or_else(|| free(p.position)))
+        .collect();
+    for (p, &k) in placed.iter_mut().zip(&chosen) {
+        p.position = tree.points[k as usize];
+    }
+    chosen
 }
 
 /// The reduced cloud's colours, scalars and normal signs: membership-weighted means of the input's.

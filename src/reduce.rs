@@ -82,27 +82,30 @@ pub fn reduce(
     params.validate()?;
     let m = fuzzifier(params);
     let denoised = features.denoised(tree);
-    let clustering = match (params.method, count(params.target, tree, features)) {
-        (_, Some(count)) if count == cloud.len() => keep_all(tree, features),
-        (Method::Paper, count) => paper::cluster(tree, features, count, params, progress)?,
-        (Method::Adaptive, count) => adaptive(
-            tree,
-            (features, &denoised),
-            count.unwrap_or(cloud.len()),
-            params,
-            progress,
-        )?,
+    let goal = Goal::new(params, tree, features);
+    let clustering = match &goal {
+        Goal::Count(count) | Goal::Density(count, _) if *count == cloud.len() => {
+            keep_all(tree, features)
+        }
+        Goal::Flatness => paper::cluster(tree, features, None, params, progress)?,
+        Goal::Count(count) => paper::cluster(tree, features, Some(*count), params, progress)?,
+        Goal::Density(count, density) => {
+            let samples = Samples {
+                points: &denoised,
+                features,
+                density,
+            };
+            adaptive(tree, samples, *count, params, progress)?
+        }
     };
     progress.update(Stage::Place, 0.0)?;
-    let placement = match params.placement {
-        Placement::Sample => Placement::Sample,
-        _ if params.method == Method::Paper || clustering.centers.len() == cloud.len() => {
-            Placement::Center
-        }
-        other => other,
+    let placement = match (params.placement, goal) {
+        (Placement::Sample, _) => Placement::Sample,
+        (other, Goal::Density(count, _)) if count < cloud.len() => other,
+        _ => Placement::Center,
     };
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let placed = placement::place(
+    let mut placed = placement::place(
         &denoised,
         features,
         &clustering.centers,
@@ -110,12 +113,16 @@ pub fn reduce(
         (placement, m),
     );
     progress.update(Stage::Place, 0.5)?;
+    let nearest = if placement == Placement::Sample {
+        placement::snap(tree, &clustering.shares, &members, &mut placed)
+    } else {
+        par::map(
+            placed.len(),
+            || (),
+            |i, ()| tree.nearest(placed[i].position).index,
+        )
+    };
     let reduced = placement::carry(cloud, tree, &members, &placed);
-    let nearest = par::map(
-        placed.len(),
-        || (),
-        |i, ()| tree.order[tree.nearest(placed[i].position).index as usize],
-    );
     let mut weights = vec![0.0; placed.len()];
     for s in &clustering.shares {
         weights[s.center[0] as usize] += 1.0;
@@ -127,7 +134,7 @@ pub fn reduce(
         spacing: placed.iter().map(|p| p.spacing).collect(),
         variation: placed.iter().map(|p| p.variation).collect(),
         weights,
-        nearest,
+        nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         stats,
     })
 }
@@ -140,22 +147,39 @@ fn fuzzifier(params: &ReduceParams) -> f64 {
     })
 }
 
-/// The exact number of reduced points, or `None` where flatness decides.
-fn count(target: Target, tree: &Octree, features: &Features) -> Option<usize> {
-    let n = tree.points.len();
-    match target {
-        Target::Ratio(ratio) => Some(((n as f64 * ratio).round() as usize).clamp(1, n)),
-        Target::Count(count) => Some(count.min(n)),
-        Target::Tolerance(tolerance) => Some(count_for_tolerance(tolerance, features).clamp(1, n)),
-        Target::Flatness(_) => None,
-    }
+/// What the options ask for.
+enum Goal {
+    /// This many points by the paper's method.
+    Count(usize),
+    /// This many points with this density.
+    Density(usize, Density),
+    /// Flat cells are reduced, the others kept: the paper's own criterion, for which both methods take its cells.
+    Flatness,
 }
 
-/// A chord of length h over curvature κ is off by κh²/8, so h = √(8ε/κ); the count is the area over h².
-fn count_for_tolerance(tolerance: f64, features: &Features) -> usize {
-    let pairs = features.spacing.iter().zip(&features.curvature);
-    let share = |(&s, &k): (&f32, &f32)| f64::from(s).powi(2) * f64::from(k) / (8.0 * tolerance);
-    pairs.map(share).sum::<f64>().ceil() as usize
+impl Goal {
+    fn new(params: &ReduceParams, tree: &Octree, features: &Features) -> Goal {
+        let n = tree.points.len();
+        let count = match params.target {
+            Target::Ratio(ratio) => ((n as f64 * ratio).round() as usize).clamp(1, n),
+            Target::Count(count) => count.min(n),
+            Target::Flatness(_) => return Goal::Flatness,
+            Target::Tolerance(tolerance) => {
+                let density = Density::within(tree, features, tolerance);
+                return match params.method {
+                    Method::Paper => Goal::Count(density.count()),
+                    Method::Adaptive => Goal::Density(density.count(), density),
+                };
+            }
+        };
+        match params.method {
+            Method::Paper => Goal::Count(count),
+            Method::Adaptive => Goal::Density(
+                count,
+                Density::new(tree, features, count, params.curvature_weight),
+            ),
+        }
+    }
 }
 
 fn keep_all(tree: &Octree, features: &Features) -> Clustering {
@@ -184,30 +208,24 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 
 fn adaptive(
     tree: &Octree,
-    (features, points): (&Features, &[Vec3]),
+    samples: Samples,
     count: usize,
     params: &ReduceParams,
     progress: &mut dyn Progress,
 ) -> Result<Clustering> {
-    let density = Density::new(tree, features, count, params.curvature_weight);
     let capacity = cell_points(count, tree.points.len(), params);
     let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
-    let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let quotas = density::quotas(&samples.density.shares(&cells), &cells, count);
     let settling = Settling {
         fuzzifier: fuzzifier(params),
         epsilon: params.epsilon.unwrap_or(1e-2),
         max_iterations: params.max_iterations.unwrap_or(8),
     };
-    let samples = Samples {
-        points,
-        features,
-        density: &density,
-    };
     let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
     Ok(Clustering {
         centers: clusters.centers,
         shares: clusters.shares,
-        spacing: density.spacing,
+        spacing: samples.density.spacing.clone(),
         cells: cells.len(),
         iterations: clusters.iterations,
         kept: 0,

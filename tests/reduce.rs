@@ -1,0 +1,490 @@
+//! What a reduction promises: exact counts, points on the surface, complete bookkeeping, no input that breaks it.
+
+mod common;
+
+use common::{Shape, points};
+use glam::{DVec3, Vec3};
+use pointweave::density::quotas;
+use pointweave::features::Features;
+use pointweave::octree::Octree;
+use pointweave::params::{Clusters, Method, Norm, Placement, Target};
+use pointweave::progress::Silent;
+use pointweave::reduce::{Reduced, reduce};
+use pointweave::rng::Rng;
+use pointweave::{Cloud, Error, ReduceParams, Stage};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+fn run(cloud: &Cloud, params: &ReduceParams) -> Reduced {
+    let tree = Octree::build(&cloud.points);
+    let features = Features::measure(&tree, &mut Silent).unwrap();
+    let reduced = reduce(cloud, &tree, &features, params, &mut Silent).unwrap();
+    assert_sound(cloud, &reduced);
+    reduced
+}
+
+/// Lengths, finiteness, weights and indices of any result.
+fn assert_sound(cloud: &Cloud, r: &Reduced) {
+    let n = r.cloud.len();
+    let normals = r.cloud.normals.as_ref().unwrap();
+    for length in [
+        normals.len(),
+        r.spacing.len(),
+        r.variation.len(),
+        r.weights.len(),
+        r.nearest.len(),
+    ] {
+        assert_eq!(length, n);
+    }
+    assert!(r.cloud.points.iter().chain(normals).all(|p| p.is_finite()));
+    assert!(r.spacing.iter().all(|s| s.is_finite() && *s >= 0.0));
+    assert!(r.variation.iter().all(|v| (0.0..=0.34).contains(v)));
+    let unit = |n: &Vec3| *n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
+    assert!(normals.iter().all(unit));
+    let total: f64 = r.weights.iter().map(|&w| f64::from(w)).sum();
+    assert_eq!(
+        total,
+        cloud.len() as f64,
+        "weights add up to the input's count"
+    );
+    for (p, &i) in r
+        .cloud
+        .points
+        .iter()
+        .zip(&r.nearest)
+        .step_by(n.div_ceil(50))
+    {
+        let nearest = cloud
+            .points
+            .iter()
+            .map(|q| q.distance_squared(*p))
+            .fold(f32::INFINITY, f32::min);
+        assert_eq!(cloud.points[i as usize].distance_squared(*p), nearest);
+    }
+}
+
+fn count(n: usize) -> ReduceParams {
+    ReduceParams {
+        target: Target::Count(n),
+        ..Default::default()
+    }
+}
+
+fn cloud_of(points: &[Vec3]) -> Cloud {
+    let positions: Vec<f32> = points.iter().flat_map(|p| p.to_array()).collect();
+    Cloud::from_f32(&positions).unwrap()
+}
+
+fn shape(shape: Shape, n: usize, noise: f64) -> Cloud {
+    Cloud::from_f64(&shape.sample(n, noise, 5)).unwrap()
+}
+
+/// Root mean square distance of the points to the shape, as a share of the diagonal.
+fn rms(shape: Shape, r: &Reduced) -> f64 {
+    let positions = r.cloud.positions_f64();
+    let squares: f64 = points(&positions).map(|p| shape.distance(p).powi(2)).sum();
+    (squares / r.cloud.len() as f64).sqrt() / r.cloud.frame.diagonal
+}
+
+#[test]
+fn counts_are_exact_from_one_to_all() {
+    let cloud = shape(Shape::Box, 700, 0.0);
+    for method in [Method::Adaptive, Method::Paper] {
+        for n in [1, 2, 3, 7, 50, 233, 350, 600, 690, 699, 700, 5000] {
+            let r = run(&cloud, &ReduceParams { method, ..count(n) });
+            assert_eq!(r.cloud.len(), n.min(700), "{method:?}");
+        }
+        for ratio in [1e-9, 0.1, 1.0 / 3.0, 0.5, 0.9, 1.0] {
+            let target = Target::Ratio(ratio);
+            let r = run(
+                &cloud,
+                &ReduceParams {
+                    method,
+                    target,
+                    ..Default::default()
+                },
+            );
+            assert_eq!(r.cloud.len(), ((700.0 * ratio).round() as usize).max(1));
+        }
+    }
+}
+
+#[test]
+fn tiny_and_degenerate_clouds_are_reduced_too() {
+    let line = |n: usize| {
+        (0..n)
+            .map(|i| Vec3::new(i as f32, 0.0, 0.0))
+            .collect::<Vec<_>>()
+    };
+    let plane: Vec<Vec3> = (0..400)
+        .map(|i| Vec3::new((i % 20) as f32, (i / 20) as f32, 0.0))
+        .collect();
+    let copies: Vec<Vec3> = (0..600).map(|i| line(30)[i % 30]).collect();
+    let mut uneven = plane.clone();
+    uneven.extend((0..900).map(|i| Vec3::splat(5.0 + i as f32 * 1e-6)));
+    uneven.push(Vec3::splat(1e6));
+    let clouds = [
+        line(1),
+        line(2),
+        line(3),
+        line(10),
+        line(200),
+        vec![Vec3::ONE; 500],
+        plane,
+        copies,
+        uneven,
+    ];
+    for points in clouds {
+        let cloud = cloud_of(&points);
+        let n = points.len();
+        for method in [Method::Adaptive, Method::Paper] {
+            for placement in [
+                Placement::Implicit,
+                Placement::Mesh,
+                Placement::Center,
+                Placement::Sample,
+            ] {
+                for c in [1, n.div_ceil(3), n - n / 10, n] {
+                    let r = run(
+                        &cloud,
+                        &ReduceParams {
+                            method,
+                            placement,
+                            ..count(c)
+                        },
+                    );
+                    assert_eq!(r.cloud.len(), c);
+                }
+            }
+            for target in [Target::Tolerance(1e-3), Target::Flatness(3e-4)] {
+                run(
+                    &cloud,
+                    &ReduceParams {
+                        method,
+                        target,
+                        ..Default::default()
+                    },
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn copies_share_their_place_and_do_not_starve_the_rest() {
+    // Every point twenty times: the same as once, but for the weights.
+    let once = shape(Shape::Sphere, 600, 0.0);
+    let many = cloud_of(
+        &once
+            .points
+            .iter()
+            .flat_map(|p| [*p; 20])
+            .collect::<Vec<_>>(),
+    );
+    let r = run(&many, &count(200));
+    let middle: Vec3 = r.cloud.points.iter().sum::<Vec3>() / 200.0;
+    assert!(
+        middle.length() < 0.03,
+        "spread over the sphere, not heaped: {middle}"
+    );
+}
+
+#[test]
+fn points_lie_on_the_surface() {
+    for (s, tolerance) in [
+        (Shape::Sphere, 2e-5),
+        (Shape::Torus, 2e-4),
+        (Shape::TwoSpheres, 3e-5),
+    ] {
+        let r = run(&shape(s, 12_000, 0.0), &count(4000));
+        assert!(rms(s, &r) < tolerance, "{s:?}: {}", rms(s, &r));
+    }
+}
+
+#[test]
+fn noise_is_halved_and_normals_follow_the_surface() {
+    for s in [Shape::Sphere, Shape::Torus, Shape::Box] {
+        for noise in [1e-3, 5e-3] {
+            let diagonal = Cloud::from_f64(&s.sample(1000, 0.0, 5))
+                .unwrap()
+                .frame
+                .diagonal;
+            let cloud = shape(s, 20_000, noise * diagonal);
+            let r = run(&cloud, &count(6667));
+            assert!(rms(s, &r) < 0.5 * noise, "{s:?}: {} of {noise}", rms(s, &r));
+            let positions = r.cloud.positions_f64();
+            let normals = r.cloud.normals.as_ref().unwrap();
+            let agree = points(&positions)
+                .zip(normals)
+                .map(|(p, n)| s.normal(p).dot(n.as_dvec3()).abs());
+            let least = if matches!(s, Shape::Box) { 0.95 } else { 0.98 }; // edges are rounded
+            assert!(agree.sum::<f64>() / 6667.0 > least, "{s:?}");
+        }
+    }
+}
+
+#[test]
+fn samples_are_input_points_and_no_two_the_same() {
+    let cloud = shape(Shape::Torus, 3000, 1e-3);
+    for method in [Method::Adaptive, Method::Paper] {
+        let r = run(
+            &cloud,
+            &ReduceParams {
+                method,
+                placement: Placement::Sample,
+                ..count(900)
+            },
+        );
+        let mut indices = r.nearest.clone();
+        indices.sort_unstable();
+        indices.dedup();
+        assert_eq!(indices.len(), 900);
+        assert!(
+            r.nearest
+                .iter()
+                .zip(&r.cloud.points)
+                .all(|(&i, &p)| cloud.points[i as usize] == p)
+        );
+    }
+}
+
+#[test]
+fn curved_parts_get_more_points_and_even_parts_stay_even() {
+    let cloud = shape(Shape::Box, 20_000, 0.0);
+    let share_near_edges = |curvature_weight| {
+        let r = run(
+            &cloud,
+            &ReduceParams {
+                curvature_weight,
+                ..count(2000)
+            },
+        );
+        assert!(r.stats.evenness < 0.3, "{}", r.stats.evenness);
+        let edge = |p: DVec3| {
+            let mut q = (p.abs() - DVec3::new(1.0, 0.7, 0.5)).to_array();
+            q.sort_by(f64::total_cmp);
+            q[1] > -0.1
+        };
+        points(&r.cloud.positions_f64())
+            .filter(|&p| edge(p))
+            .count()
+    };
+    let (even, strong) = (share_near_edges(0.0), share_near_edges(1.0));
+    assert!(strong as f64 > 1.2 * even as f64, "{even} {strong}");
+}
+
+#[test]
+fn uneven_scans_become_even() {
+    // A sphere with fifteen times the density on one side.
+    let mut rng = Rng::new(3);
+    let mut positions = Vec::new();
+    while positions.len() < 60_000 {
+        let p = DVec3::new(rng.normal(), rng.normal(), rng.normal()).normalize();
+        if rng.uniform() < if p.x > 0.0 { 1.0 } else { 1.0 / 15.0 } {
+            positions.extend(p.to_array());
+        }
+    }
+    let r = run(&Cloud::from_f64(&positions).unwrap(), &count(1500));
+    let sparse = points(&r.cloud.positions_f64())
+        .filter(|p| p.x < 0.0)
+        .count();
+    assert!(
+        (600..900).contains(&sparse),
+        "{sparse} of 1500 on the sparse half"
+    );
+}
+
+#[test]
+fn what_the_caller_attached_is_carried_along() {
+    let cloud = shape(Shape::Sphere, 4000, 0.0);
+    let z: Vec<f32> = cloud.points.iter().map(|p| p.z).collect();
+    let colors: Vec<u8> = cloud
+        .points
+        .iter()
+        .flat_map(|p| if p.x > 0.0 { [255, 0, 0] } else { [0, 0, 255] })
+        .collect();
+    let normals: Vec<f32> = cloud.points.iter().flat_map(|p| (-*p).to_array()).collect();
+    let cloud = cloud
+        .with_attribute("z", &z)
+        .unwrap()
+        .with_colors(&colors)
+        .unwrap();
+    let cloud = cloud
+        .with_normals(&normals)
+        .unwrap()
+        .with_origin([1e6, 2e6, 3.0]);
+    let r = run(&cloud, &count(800));
+    assert_eq!((r.cloud.origin, r.cloud.frame), (cloud.origin, cloud.frame));
+    let near = |(p, z): (&Vec3, &f32)| (p.z - z).abs() < 0.01;
+    assert!(
+        r.cloud
+            .points
+            .iter()
+            .zip(&r.cloud.attributes[0].values)
+            .all(near)
+    );
+    let colors = r.cloud.colors.as_ref().unwrap();
+    let pure = r
+        .cloud
+        .points
+        .iter()
+        .zip(colors)
+        .filter(|(p, _)| p.x.abs() > 0.05);
+    pure.for_each(|(p, c)| assert_eq!(*c, if p.x > 0.0 { [255, 0, 0] } else { [0, 0, 255] }));
+    // The given normals point inwards, so the reduced ones do.
+    let inwards = r.cloud.points.iter().zip(r.cloud.normals.as_ref().unwrap());
+    inwards.for_each(|(p, n)| assert!(p.dot(*n) < 0.0));
+}
+
+#[test]
+fn a_tolerance_asks_for_more_points_when_it_is_small() {
+    let cloud = shape(Shape::Torus, 20_000, 0.0);
+    let reduced = |tolerance| {
+        let target = Target::Tolerance(tolerance);
+        run(
+            &cloud,
+            &ReduceParams {
+                target,
+                ..Default::default()
+            },
+        )
+        .cloud
+        .len()
+    };
+    let (coarse, fine) = (reduced(2e-3), reduced(1e-3));
+    // Halving ε halves h²: twice the points.
+    assert!(
+        (1.6..2.4).contains(&(fine as f64 / coarse as f64)),
+        "{coarse} {fine}"
+    );
+}
+
+#[test]
+fn flatness_keeps_the_sharp_points_and_thins_the_flat_ones() {
+    let cloud = shape(Shape::Box, 20_000, 0.0);
+    for method in [Method::Paper, Method::Adaptive] {
+        let target = Target::Flatness(3e-4);
+        let r = run(
+            &cloud,
+            &ReduceParams {
+                method,
+                target,
+                ..Default::default()
+            },
+        );
+        assert!(
+            r.stats.kept > 100 && r.stats.kept < 8000,
+            "{}",
+            r.stats.kept
+        );
+        let flat = (20_000 - r.stats.kept) as f64 / 3.0;
+        assert!((r.cloud.len() as f64 - r.stats.kept as f64 - flat).abs() < 0.02 * flat);
+        let unmoved = r
+            .nearest
+            .iter()
+            .zip(&r.cloud.points)
+            .filter(|&(&i, &p)| cloud.points[i as usize] == p);
+        assert!(unmoved.count() >= r.stats.kept);
+    }
+}
+
+#[test]
+fn every_option_of_the_papers_method_keeps_the_count() {
+    let cloud = shape(Shape::Torus, 1500, 1e-3);
+    for norm in [Norm::Euclidean, Norm::Diagonal, Norm::Mahalanobis] {
+        for clusters in [Clusters::Proportional, Clusters::Validity] {
+            for fuzzifier in [1.5, 2.0, 2.7] {
+                let params = ReduceParams {
+                    method: Method::Paper,
+                    norm,
+                    clusters,
+                    fuzzifier: Some(fuzzifier),
+                    epsilon: Some(1e-2),
+                    max_iterations: Some(30),
+                    cell_points: Some(100),
+                    ..count(400)
+                };
+                let r = run(&cloud, &params);
+                assert_eq!(r.cloud.len(), 400);
+                assert!(r.stats.iterations >= 1 && r.stats.iterations <= 30);
+                assert!(r.stats.objective > 0.0 && r.stats.cells > 10);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_seed_decides_the_papers_start_and_nothing_else_does() {
+    let cloud = shape(Shape::Sphere, 1000, 0.0);
+    let paper = |seed| {
+        run(
+            &cloud,
+            &ReduceParams {
+                method: Method::Paper,
+                seed,
+                ..count(300)
+            },
+        )
+        .cloud
+        .points
+    };
+    assert_eq!(paper(1), paper(1));
+    assert_ne!(paper(1), paper(2));
+    let adaptive = |seed| {
+        run(&cloud, &ReduceParams { seed, ..count(300) })
+            .cloud
+            .points
+    };
+    assert_eq!(
+        adaptive(1),
+        adaptive(2),
+        "the default starts without chance"
+    );
+}
+
+#[test]
+fn quotas_add_up_and_fit_into_their_cells() {
+    let cells = [0..10, 10..11, 11..40, 40..100];
+    for total in [1, 2, 10, 50, 99, 100] {
+        for shares in [
+            [1.0, 1.0, 1.0, 1.0],
+            [0.0, 0.0, 0.0, 0.0],
+            [100.0, 0.1, 0.0, 0.2],
+        ] {
+            let q = quotas(&shares, &cells, total);
+            assert_eq!(q.iter().sum::<usize>(), total);
+            assert!(q.iter().zip(&cells).all(|(q, c)| *q <= c.len()));
+        }
+    }
+}
+
+#[test]
+fn a_listener_stops_it_at_any_stage() {
+    let cloud = shape(Shape::Sphere, 5000, 0.0);
+    let tree = Octree::build(&cloud.points);
+    let features = Features::measure(&tree, &mut Silent).unwrap();
+    for stage in [Stage::Cluster, Stage::Place] {
+        for method in [Method::Adaptive, Method::Paper] {
+            let params = ReduceParams {
+                method,
+                ..Default::default()
+            };
+            let stopped = reduce(
+                &cloud,
+                &tree,
+                &features,
+                &params,
+                &mut |s: Stage, _: f32| s != stage,
+            );
+            assert_eq!(stopped.err(), Some(Error::Cancelled));
+        }
+    }
+    let bad = ReduceParams {
+        fuzzifier: Some(1.0),
+        ..Default::default()
+    };
+    let refused = reduce(&cloud, &tree, &features, &bad, &mut Silent)
+        .err()
+        .unwrap();
+    assert_eq!(refused.code(), "bad-option");
+}
