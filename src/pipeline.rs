@@ -227,12 +227,19 @@ pub fn inspect(positions: &[f64], progress: &mut dyn Progress) -> Result<CloudIn
     })
 }
 
-/// The octree and the features of a cloud.
+/// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
+/// as a scanner knows more than neighbours tell.
 fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
     progress.update(Stage::Octree, 0.0)?;
     let tree = Octree::build(&cloud.points);
     progress.update(Stage::Octree, 1.0)?;
-    let features = Features::measure(&tree, progress)?;
+    let mut features = Features::measure(&tree, progress)?;
+    if let Some(normals) = &cloud.normals {
+        for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
+            let own = normals[i as usize];
+            *normal = if own == Vec3::ZERO { *normal } else { own };
+        }
+    }
     Ok((tree, features))
 }
 
