@@ -1,7 +1,7 @@
 // The built page on a static server of its own, in headless Chromium, and what the tests do with it.
 
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
+import { readFile, readdir } from 'node:fs/promises';
 import { existsSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { dirname, extname, join, resolve } from 'node:path';
@@ -38,6 +38,13 @@ export async function sharedFile(path) {
   if (existsSync(file)) return readFile(file);
   console.log(`not tested: ${file} is missing (set POINTWEAVE_SHARED to the folder that holds data/)`);
   return null;
+}
+
+/** Names and contents of the files in a folder of the shared data; none, after a printed line, where it is missing. */
+export async function sharedFolder(path) {
+  const names = await readdir(join(SHARED, 'data', path)).catch(() => []);
+  if (!names.length) console.log(`not tested: ${join(SHARED, 'data', path)} is missing (set POINTWEAVE_SHARED to the folder that holds data/)`);
+  return Promise.all(names.map(async (name) => [name, await readFile(join(SHARED, 'data', path, name))]));
 }
 
 /**

@@ -82,6 +82,24 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
     }
   });
 
+  await t.test('mouse: drag turns, wheel zooms, buttons fit and stand up', async () => {
+    const before = await site.picture();
+    await page.mouse.move(400, 400);
+    await page.mouse.down();
+    await page.mouse.move(520, 420, { steps: 4 });
+    await page.mouse.up();
+    await site.settled();
+    const turned = await site.picture();
+    assert.ok(difference(before, turned) > 0.05, 'dragging turns the model');
+    await page.mouse.wheel(0, 600);
+    await site.settled();
+    assert.ok(silhouette(await site.picture()).area < 0.9 * silhouette(turned).area, 'the wheel goes away');
+    await page.click('#up');
+    await page.click('#fit');
+    await site.settled();
+    assert.ok(difference(turned, await site.picture()) > 0.05, 'another side is up');
+  });
+
   await t.test('downloads hold what the numbers say', async () => {
     for (const [button, pattern, number] of [
       ['#download-reduced', /element vertex (\d+)/, 'outputPoints'],
@@ -175,6 +193,7 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
       const text = await site.message();
       assert.match(text, new RegExp(`\\[(${codes})\\]`), `${name}: ${text}`);
       assert.ok(text.includes(name), 'the file is named');
+      if (text.includes('[bad-file]')) assert.match(text, /(line|byte) \d+/, 'the place is named');
       assert.equal(await page.getAttribute('#app', 'data-state'), 'ready');
       assert.equal(await site.number('triangles'), triangles, 'what was there is still there');
       await page.click('#message-close');

@@ -11,6 +11,7 @@
 /** @typedef {{ positions: Float32Array | Float64Array, origin?: [number, number, number] }} Placed */
 
 /**
+ * Of the finite coordinates; the engine says what is wrong with the others.
  * @param {Placed} cloud
  * @returns {Frame}
  */
@@ -20,6 +21,7 @@ export function frameOf({ positions, origin = [0, 0, 0] }) {
   for (let i = 0; i < positions.length; i += 3) {
     for (let axis = 0; axis < 3; axis++) {
       const value = positions[i + axis];
+      if (!Number.isFinite(value)) continue;
       if (value < low[axis]) low[axis] = value;
       if (value > high[axis]) high[axis] = value;
     }

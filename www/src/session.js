@@ -99,9 +99,11 @@ export class Session extends EventTarget {
     try {
       const cloud = await load(job.signal);
       if (job.signal.aborted) return;
-      this.scan = { ...source, cloud, count: cloud.positions.length / 3, frame: frameOf(cloud) };
+      const count = cloud.positions.length / 3;
+      if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
+      this.scan = { ...source, cloud, count, frame: frameOf(cloud) };
       this.outcome = null;
-      if (!this.#shareChosen) this.share = startingShare(this.scan.count);
+      if (!this.#shareChosen) this.share = startingShare(count);
       this.#emit('opened', this.scan);
     } catch (error) {
       this.#end(job, 'failed', { error, title: source.title });
