@@ -15,9 +15,11 @@ const CREASE_COSINE: f32 = 0.906;
 /// planes at 35° to each other (tan²(17.5°)); noise in the gradients stays under it. (Ju et al., section 2.3, cut
 /// singular values off at 0.1.)
 const RANK_SHARE: f64 = 0.1;
-/// Evaluations that find where an edge is crossed. Beside a crease values are not linear along an edge, and a plane
-/// through a wrong point moves the vertex.
+/// Evaluations that find where an edge is crossed, at most. Beside a crease values are not linear along an edge, and a
+/// plane through a wrong point moves the vertex.
 const EVALUATIONS: usize = 3;
+/// A crossing is found once the surface is nearer to it than this share of an edge.
+const FOUND: f64 = 0.02;
 
 /// Marks the vertices whose normal differs from that of a neighbour.
 pub(crate) fn mark(vertices: &[Vertex], quads: &[Quad]) -> Vec<bool> {
@@ -51,6 +53,8 @@ pub(crate) struct Crossing {
     at: f64,
     /// Whether values rise along the edge.
     rising: bool,
+    /// The surface's tangent plane near the best guess: a point and the unit normal.
+    plane: Option<(DVec3, DVec3)>,
 }
 
 impl Crossing {
@@ -63,6 +67,7 @@ impl Crossing {
             high: 1.0,
             at: low / (low - high),
             rising: low < 0.0,
+            plane: None,
         }
     }
 
@@ -70,8 +75,14 @@ impl Crossing {
         self.start + self.along * self.at
     }
 
-    /// One Newton step, or halving where that would leave the bracket.
-    fn improve(&mut self, (value, gradient): (f64, DVec3)) {
+    /// Takes value and gradient at the best guess: a Newton step, or halving where that would leave the bracket, unless
+    /// the crossing is found. Returns whether to go on.
+    fn improve(&mut self, (value, gradient): (f64, DVec3)) -> bool {
+        let to_plane = gradient * (-value / gradient.length_squared());
+        self.plane = Some((self.position() + to_plane, gradient.normalize()));
+        if to_plane.length() < FOUND * self.along.length() {
+            return false;
+        }
         if (value < 0.0) == self.rising {
             self.low = self.at;
         } else {
@@ -84,6 +95,7 @@ impl Crossing {
         } else {
             (self.low + self.high) / 2.0
         };
+        true
     }
 }
 
@@ -106,23 +118,22 @@ pub(crate) fn sharpen<F: Implicit>(
     edge: f64,
     probe: &mut Probe<F>,
 ) -> Vec<Moved> {
-    for evaluation in 1..=EVALUATIONS {
+    let mut sought: Vec<usize> = (0..crossings.len()).collect();
+    for _ in 0..EVALUATIONS {
         probe.at.clear();
-        probe.at.extend(crossings.iter().map(Crossing::position));
+        probe
+            .at
+            .extend(sought.iter().map(|&k| crossings[k].position()));
         probe.evaluate();
-        if evaluation < EVALUATIONS {
-            for (crossing, found) in crossings.iter_mut().zip(&probe.found) {
-                found.iter().for_each(|&found| crossing.improve(found));
-            }
-        }
+        let mut found = probe.found.iter();
+        sought
+            .retain(|&k| matches!(found.next(), Some(&Some(found)) if crossings[k].improve(found)));
     }
-    let planes = |k: usize| {
-        let (value, gradient) = probe.found[k]?;
-        let nearest = probe.at[k] - gradient * (value / gradient.length_squared());
-        Some((nearest, gradient.normalize()))
-    };
     let solve = |candidate: &Candidate| {
-        let planes: Vec<_> = candidate.crossings.clone().filter_map(planes).collect();
+        let planes: Vec<_> = crossings[candidate.crossings.clone()]
+            .iter()
+            .filter_map(|c| c.plane)
+            .collect();
         let crease = meet_planes(&planes)?;
         let inside = clamp(crease.in_cell(candidate.corner, edge));
         let position = candidate.corner + edge * inside;
@@ -235,10 +246,11 @@ mod tests {
         let value = |t: f64| (t - 0.2).max(10.0 * (t - 0.6));
         let slope = |t: f64| if t < 0.644 { 1.0 } else { 10.0 };
         let mut crossing = Crossing::new(DVec3::ZERO, DVec3::X, [value(0.0), value(1.0)]);
-        for _ in 1..EVALUATIONS {
-            let t = crossing.at;
-            crossing.improve((value(t), DVec3::X * slope(t)));
+        let mut evaluations = 1;
+        while crossing.improve((value(crossing.at), DVec3::X * slope(crossing.at))) {
+            evaluations += 1;
         }
+        assert!(evaluations <= EVALUATIONS);
         assert!((crossing.at - 0.2).abs() < 1e-9, "{}", crossing.at);
     }
 }

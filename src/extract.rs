@@ -107,7 +107,7 @@ pub const MOST_FILLED: f64 = 0.35;
 ///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
 ///   surface; components not closed by then stay open.
 ///
-/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 4 points.
+/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 6 points.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
@@ -136,9 +136,9 @@ pub fn extract<F: Implicit>(
     )?;
     decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
+    split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points);
     let (filled, closed, open) = summarise(&dual);
-    split_bow_ties(&mut dual);
     let mesh = triangulate(dual);
     span(progress, 0.95, 1.0)(1.0)?;
     Ok(Extracted {
