@@ -214,7 +214,9 @@ fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
             tools.display().to_string()
         ))
         .env("WASM_BINDGEN_TEST_TIMEOUT", "1200")
-        .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60");
+        .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60")
+        // Of the runner, below every failed test: it says nothing of the test.
+        .env("RUST_LIB_BACKTRACE", "0");
     tests
 }
 
