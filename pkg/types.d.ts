@@ -11,7 +11,7 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   positions: Positions;
   /** r g b r g b …, 0-255. */
   colors?: Uint8Array;
-  /** Unit vectors x y z …; used as they are where `orient` is false. */
+  /** Unit vectors x y z …; their directions are taken for the surface's, their signs too where `orient` is false. */
   normals?: Float32Array;
   /** One value a point: intensity, classification, time … */
   attributes?: Record<string, Float32Array>;
