@@ -5,7 +5,7 @@
 import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
-import { checkEngineOptions, checkOptions } from './options.js';
+import { checkEngineOptions, checkModel, checkOptions } from './options.js';
 
 /** @import { Build, EngineOptions } from './types.js' */
 /** @import { Host, Watch, WorkerLike } from './hosts.js' */
@@ -96,8 +96,8 @@ export class Engine {
 
   /** @param {any} model @param {any} [options] */
   async sample(model, options) {
-    const { own, ...watch } = this.#check('sample', { model, ...options });
-    return this.#run({ call: 'sample', args: [own] }, watch);
+    const { own, transfer, ...watch } = this.#check('sample', options);
+    return this.#run({ call: 'sample', args: [{ model: checkModel(model), ...own }] }, watch);
   }
 
   /** Ends the worker or the pool. The call under way and those that wait reject with `disposed`. */

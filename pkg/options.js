@@ -96,8 +96,9 @@ const WRITE = {
   encoding: choice('binary', 'ascii'),
 };
 
+const MODEL = choice('duck', 'pig', 'part');
+
 const SAMPLE = {
-  model: choice('duck', 'pig', 'part'),
   count: integer(1, 10_000_000),
   seed: integer(0, Number.MAX_SAFE_INTEGER, 0),
 };
@@ -134,6 +135,15 @@ export const DEFAULTS = deepFreeze({ reduce: defaultsOf(REDUCE), reconstruct: de
 export function checkOptions(call, options = {}) {
   const { signal, onProgress, transfer, ...own } = checkTable({ ...TABLES[call], ...CALL }, options, '');
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
+}
+
+/**
+ * @param {unknown} model
+ * @returns {import('./types.js').Model}
+ */
+export function checkModel(model) {
+  if (!MODEL.accepts(model, '')) throw badOption('model', MODEL.expected, model);
+  return /** @type {import('./types.js').Model} */ (model);
 }
 
 /**

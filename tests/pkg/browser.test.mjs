@@ -49,6 +49,15 @@ test('any other page has the single-threaded build', async (t) => {
   assert.deepEqual(reported.slice(0, 2), ['single', 1]);
 });
 
+test('wasm files elsewhere are found from the page', async (t) => {
+  const page = await openPage(t);
+  for (const wasmUrl of ['pointweave/wasm', '/pointweave/wasm/', { threads: 'pointweave/wasm/threads/pointweave_bg.wasm' }]) {
+    assert.equal((await reconstructIn(page, { threads: 2, wasmUrl })).build, 'threads');
+  }
+  const lost = await reconstructIn(page, { threads: 1, wasmUrl: 'nowhere' }).catch(String);
+  assert.match(lost, /nowhere\/single\/pointweave_bg\.wasm did not load: 404/);
+});
+
 test('a strict content security policy is enough', async (t) => {
   const page = await openPage(t, { strict: true });
   for (const threads of [1, 2]) assert.equal((await reconstructIn(page, { threads })).threads, threads);

@@ -63,6 +63,20 @@ test('threads that do not start leave the single-threaded build', async (t) => {
   assert.equal(broken.build, 'single', 'a pool of 2^32-1 threads cannot be');
 });
 
+test('the wasm files can lie elsewhere', async (t) => {
+  const folder = new URL('../../pkg/wasm/', import.meta.url);
+  const single = new URL('single/pointweave_bg.wasm', folder);
+  for (const wasmUrl of [folder, folder.href, folder.href.slice(0, -1), { single }, { single: single.href }]) {
+    const asked = [];
+    const { api } = counting({ compile: (build, url) => (asked.push(url), platform.compile(build, url)) });
+    const engine = await api.createEngine({ threads: 1, wasmUrl });
+    t.after(() => engine.dispose());
+    assert.deepEqual(asked, [wasmUrl]);
+    assert.equal((await engine.inspect(sphere(500))).count, 500);
+  }
+  assert.equal((await engineFor(t, { threads: 2, wasmUrl: folder })).build, 'threads');
+});
+
 test('concurrent first calls start one host', async () => {
   const { made, api } = counting();
   const engine = await api.createEngine({ threads: 1, worker: true });

@@ -60,6 +60,8 @@ test('every wrong value is named, with what was expected', async () => {
   await badOption(read(new Uint8Array(3), { format: 'doc' }));
   await badOption(write(cloud, { format: 'doc' }));
   await badOption(sample('goat'));
+  await badOption(sample('duck', 500));
+  await badOption(sample('duck', { model: 'pig' }));
   await badOption(sample('duck', { count: 0 }));
   await badOption(sample('duck', { count: 1e7 + 1 }));
   for (const options of [{ threads: 0 }, { threads: 'many' }, { worker: 1 }, { wasmUrl: 5 }, { wasmUrl: { double: 'x' } }, { workers: true }]) {
