@@ -26,6 +26,7 @@ for (const isolated of [true, false]) {
     assert.equal(await site.number('outputPoints'), Math.round(DUCK / 3));
     assert.equal(await site.number('components'), 1);
     assert.match(await site.page.innerText('#engine'), isolated ? /^\d+ threads$/ : /^one thread$/);
+    if (!isolated) assert.match(await site.page.innerText('#engine-reason'), /not cross-origin isolated/);
     assert.equal(await site.page.isVisible('#message'), false);
 
     const mesh = silhouette(await site.pictureOf('mesh')).closed(6);

@@ -117,6 +117,7 @@ export class App {
 
   #opened(/** @type {Scan} */ scan) {
     this.#mark(scan.model);
+    document.title = `${scan.title} · Pointweave`;
     byId('caption-title', HTMLElement).textContent = scan.title;
     byId('caption-detail', HTMLElement).textContent = `${scan.model ? 'simulated scan, ' : ''}${format.count(scan.count)} points`;
     byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');

@@ -44,7 +44,7 @@ export class Numbers {
       this.#set(`${name}Share`, share, format.percent);
     }
     this.#engine.textContent = engineWords(report);
-    this.#reason.textContent = `Because ${report.reason}.`;
+    this.#reason.textContent = report.build === 'single' ? `One thread, because ${report.reason}.` : '';
     this.#showStages(report.ms);
     this.#box.dataset.fresh = 'true';
   }
