@@ -95,7 +95,6 @@ pub fn orient(
                 flip_single(&edges, &adjacency, &mut signs);
             }
         }
-        progress.update(Stage::Orient, 0.9)?;
         for component in &mut components {
             turn_outward(component, fits, sites, &gradients, &mut signs);
         }
