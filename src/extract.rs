@@ -2,7 +2,7 @@
 //!
 //! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
-//! 3. `trim`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//! 3. `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
 //!
 //! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
 
@@ -11,6 +11,7 @@ use crate::dual::{Dual, build};
 use crate::error::Result;
 use crate::params::Boundary;
 use crate::progress::Progress;
+use crate::rims;
 use crate::trim::{decide_holes, drop_phantoms, split_bow_ties, summarise, trim_rims};
 use glam::{DVec3, Vec3};
 
@@ -139,7 +140,8 @@ pub fn extract<F: Implicit>(
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points);
     let (filled, closed, open) = summarise(&dual);
-    let mesh = triangulate(dual);
+    let mut mesh = triangulate(dual);
+    rims::smooth(&mut mesh);
     span(progress, 0.95, 1.0)(1.0)?;
     Ok(Extracted {
         mesh,

@@ -62,6 +62,7 @@ mod loops;
 mod dual;
 mod creases;
 mod trim;
+mod rims;
 pub mod attach;
 pub mod report;
 pub mod distance;
