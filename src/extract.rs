@@ -108,7 +108,7 @@ pub const MOST_FILLED: f64 = 0.35;
 ///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
 ///   surface; components not closed by then stay open.
 ///
-/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 6 points.
+/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 16 points.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.

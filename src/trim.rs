@@ -5,6 +5,7 @@
 use crate::dual::{Dual, Quad, Vertex};
 use crate::extract::MOST_FILLED;
 use crate::octree::Octree;
+use crate::orient::SMALLEST;
 use crate::par;
 use crate::params::Boundary;
 use crate::report::Sets;
@@ -13,8 +14,8 @@ use glam::Vec3;
 /// An open surface ends this share of a point's reach away from it. Reaches are some 2.2 spacings, so that is 1.5.
 const RIM: f32 = 0.68;
 /// A component that is the nearest one to fewer points than this is a phantom: stragglers off a noisy surface make such,
-/// up to 5 of them together were seen at a noise of 0.5 % of the diagonal.
-const LEAST_POINTS: u32 = 6;
+/// up to about 10 of them together were seen at a noise of 0.5 % of the diagonal.
+const LEAST_POINTS: u32 = SMALLEST as u32;
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 1024;
 
