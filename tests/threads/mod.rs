@@ -1,6 +1,5 @@
 //! The pool for tests of the wasm-threads build, as `pkg/hosts.js` makes it for the package.
 
-use js_sys::futures::JsFuture;
 use js_sys::{JsString, Promise};
 use wasm_bindgen::prelude::*;
 
@@ -20,12 +19,9 @@ extern "C" {
 /// Starts a pool of `threads`, once a test binary.
 pub async fn start(threads: usize) {
     let glue = GLUE.with(Clone::clone);
-    start_workers(
-        glue,
-        wasm_bindgen::module(),
-        wasm_bindgen::memory(),
-        threads,
-    )
-    .await;
+    let (module, memory) = (wasm_bindgen::module(), wasm_bindgen::memory());
+    start_workers(glue, module, memory, threads)
+        .await
+        .expect("every worker starts");
     pointweave::pool::build(threads).expect("one pool a test binary");
 }
