@@ -21,6 +21,10 @@ const EVALUATIONS: usize = 3;
 /// A crossing is found once the surface is nearer to it than this share of an edge.
 const FOUND: f64 = 0.02;
 
+/// A vertex that would be farther off the surface than this share of an edge is left where it is: its cell does not hold
+/// the place where the planes meet.
+const FARTHEST: f64 = 0.2;
+
 /// Marks the vertices whose normal differs from that of a neighbour.
 pub(crate) fn mark(vertices: &[Vertex], quads: &[Quad]) -> Vec<bool> {
     let mut marked = vec![false; vertices.len()];
@@ -143,7 +147,14 @@ pub(crate) fn sharpen<F: Implicit>(
             crease.normal.as_vec3(),
         ))
     };
-    candidates.iter().filter_map(solve).collect()
+    let mut moved: Vec<Moved> = candidates.iter().filter_map(solve).collect();
+    probe.at.clear();
+    probe.at.extend(moved.iter().map(|m| m.1.as_dvec3()));
+    probe.evaluate();
+    let mut found = probe.found.iter();
+    let is_near = |(value, _): (f64, DVec3)| value.abs() < FARTHEST * edge;
+    moved.retain(|_| found.next().is_some_and(|found| found.is_some_and(is_near)));
+    moved
 }
 
 /// A line or a point in which planes meet.

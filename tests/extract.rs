@@ -264,6 +264,16 @@ fn sharp_keeps_the_edges_and_corners_of_a_cube() {
         .map(|v| v.length())
         .fold(0.0, f32::max);
     assert!((corner as f64 - 0.2 * 3f64.sqrt()).abs() < 1e-4, "{corner}");
+    // Nor does a coarse lattice throw a corner off.
+    let coarse = check_everywhere(
+        cube,
+        ExtractParams {
+            resolution: 0.02,
+            ..SHARP
+        },
+    );
+    let (at_vertices, _) = coarse.errors(cube);
+    assert!(at_vertices < 0.25 * 0.02, "{at_vertices}");
     // Without it they are cut off by less than a cell.
     let smooth = check_everywhere(cube, SMOOTH);
     let loss = smooth.volume() / 0.064 - 1.0;
