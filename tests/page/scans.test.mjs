@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { sample } from 'pointweave';
 import { PATIENCE, sharedFile, sharedFolder, start } from './browser.mjs';
 import { difference, expectedSilhouette, overlap, silhouette } from './pictures.mjs';
 import { mergedBunny, parseOni, parsePcd, parseXyz, toPly } from './scans.mjs';
@@ -78,6 +79,16 @@ test('real scans', { timeout: 4 * PATIENCE }, async (t) => {
     await site.drop('bunny.ply', toPly(points));
     await site.opened('bunny.ply');
     await checkResult(t, site, 'bunny', points);
+  });
+
+  await t.test('the generated pig, at the size of the paper', async (t) => {
+    const { positions } = await sample('pig');
+    assert.equal(positions.length, 3 * 171_875);
+    await site.page.click('[data-sample="pig"]');
+    await site.opened('Toy pig');
+    await checkResult(t, site, 'pig', Array.from({ length: 171_875 }, (_, i) => positions.subarray(3 * i, 3 * i + 3)));
+    assert.equal(await site.number('boundaryEdges'), 0);
+    assert.equal(await site.number('components'), 1);
   });
 
   await t.test('hostile files: each one is shown or explained', async (t) => {
