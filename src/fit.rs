@@ -102,7 +102,8 @@ const ROUGHNESS: f64 = 0.25;
 /// Fits every sub-domain and refines those that miss the accuracy at the `input` points.
 ///
 /// A sub-domain is cut in two and fitted again when the rms distance of the input points nearest to its core exceeds
-/// `accuracy` and what the noise explains (section 5: "computed and refined until desired accuracy").
+/// `accuracy` and what the noise explains (section 5: "computed and refined until desired accuracy"), and stays cut where
+/// that brings it nearer to them.
 pub fn fit(
     subdomains: Vec<Subdomain>,
     sites: &Sites,
@@ -123,11 +124,7 @@ pub fn fit(
         150.0,
         (Stage::Fit, progress),
         || Growth::new(sites.tree.points.len()),
-        |i, growth| {
-            let mut out = Vec::new();
-            fitting.refine(subdomains[i].clone(), 0, growth, &mut out);
-            out
-        },
+        |i, growth| fitting.refine(subdomains[i].clone(), 0, growth),
     )?;
     let mut fits = Fits {
         subdomains: Vec::new(),
@@ -163,13 +160,9 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    fn refine(
-        &self,
-        subdomain: Subdomain,
-        cuts: usize,
-        growth: &mut Growth,
-        out: &mut Vec<Refined>,
-    ) {
+    /// The fit of a sub-domain, or of what it was cut into where that is nearer to the input: a cut that does not help is
+    /// taken back.
+    fn refine(&self, subdomain: Subdomain, cuts: usize, growth: &mut Growth) -> Vec<Refined> {
         let function = fit_one(&subdomain, self.sites, self.params);
         let own = subdomain.support[..subdomain.core]
             .iter()
@@ -177,16 +170,29 @@ impl Fitting<'_> {
         let residuals: Vec<(u32, f32)> = own
             .map(|&i| (i, function.distance(self.input.points[i as usize])))
             .collect();
-        let sum: f64 = residuals.iter().map(|&(_, r)| (r as f64).powi(2)).sum();
-        let rms = (sum / residuals.len().max(1) as f64).sqrt() as f32;
+        let whole = vec![(subdomain, function, residuals)];
+        let (subdomain, _, residuals) = &whole[0];
+        let rms = (squares(&whole) / residuals.len().max(1) as f64).sqrt() as f32;
         if rms <= self.allowed || cuts == MAX_CUTS || subdomain.core < 4 {
-            out.push((subdomain, function, residuals));
-            return;
+            return whole;
         }
-        for half in subdomain.split(self.sites, growth) {
-            self.refine(half, cuts + 1, growth, out);
+        let cut: Vec<Refined> = subdomain
+            .split(self.sites, growth)
+            .into_iter()
+            .flat_map(|half| self.refine(half, cuts + 1, growth))
+            .collect();
+        if squares(&cut) < squares(&whole) {
+            cut
+        } else {
+            whole
         }
     }
+}
+
+/// Sum of the squared residuals.
+fn squares(fits: &[Refined]) -> f64 {
+    let residuals = fits.iter().flat_map(|(_, _, residuals)| residuals);
+    residuals.map(|&(_, r)| (r as f64).powi(2)).sum()
 }
 
 /// For every site the input points nearest to it.
