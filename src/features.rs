@@ -1,10 +1,12 @@
 //! What the points say of the surface around them: spacing, unoriented normal, curvature, surface variation, noise.
 //!
 //! 1. A quadric is fitted to the nearest neighbours of every point: normal, curvature, and the noise from its residuals.
-//! 2. Where there is noise, normals are averaged over a larger support, over neighbours whose normals agree (a bilateral
-//!    filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases stay.
+//! 2. Normals are averaged over a support that grows with the noise, over neighbours whose normals agree (a bilateral
+//!    filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases become
+//!    sharp and stay so. How fast the averaged normals turn is the curvature.
 //! 3. Each point's distance to the surface is the mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on
 //!    every quadric, with a third of the variance that fitting one would have, and blind to the far side of a crease.
+//!    By that distance noisy points are moved.
 
 use crate::error::Result;
 use crate::lanes::{LANES, Lanes};
@@ -21,14 +23,14 @@ use std::ops::Range;
 pub struct Features {
     /// Wanted distance of neighbours on the surface, √(area a point), from the area of the disc that holds k neighbours.
     pub spacing: Vec<f32>,
-    /// Unit normal of arbitrary sign, of the local quadric; zero where there is none.
+    /// Unit normal of arbitrary sign, filtered; zero where there is none.
     pub normals: Vec<Vec3>,
-    /// Frobenius norm of the Hessian of the local quadric, what the noise adds removed, 1/length; 1/fit radius at most.
+    /// √(κ1² + κ2²) of the principal curvatures, from how the normals turn, 1/length; 1/support at most.
     pub curvature: Vec<f32>,
     /// Surface variation λ0/(λ0+λ1+λ2) of the neighbours, 0 (flat) to 1/3 (Pauly, Gross, Kobbelt, "Efficient
     /// simplification of point-sampled surfaces", 2002).
     pub variation: Vec<f32>,
-    /// Signed distance of the point to its local quadric, along its normal: `point - residual * normal` is denoised.
+    /// Signed distance of the point to the surface, along its normal, 0 without noise: `point - residual * normal` is denoised.
     pub residual: Vec<f32>,
     /// Estimated standard deviation of the noise across the surface.
     pub noise: f32,
@@ -43,6 +45,17 @@ const NOISE_GROUPS: usize = 512;
 /// Noise, in spacings, up to which points are left where they are, and from which they are moved all the way: on clean
 /// clouds the curvature inside the fit's support looks like noise of 0.02 spacings.
 const NOISE_FLOOR: Range<f32> = 0.04..0.1;
+
+/// Angle (as length of the difference of unit normals) from which neighbours have nothing to say to each other.
+const SAME_SIDE: f32 = 0.5;
+/// Distances along the normal, in standard deviations of the noise, from which they have not: another sheet.
+const SAME_SHEET: f32 = 5.0;
+/// Share of the neighbours on another side from which a point may be, and from which it is, next to a crease.
+const NEAR_CREASE: Range<f32> = 0.3..0.6;
+/// What a clean surface is allowed in place of noise, in spacings: the filter's formula leaves third-order terms.
+const BEND: f32 = 0.05;
+/// Coordinate of a padding lane: outside of every support, and small enough to be squared.
+const FAR: f32 = 1e6;
 
 /// Supports that follow the noise.
 #[derive(Debug, Clone, Copy)]
@@ -72,8 +85,7 @@ impl Scales {
 }
 
 impl Features {
-    /// Measures them. Cost: one fit a point, and where there is noise two passes over the neighbours; about
-    /// log n + 100 steps a point.
+    /// Measures them. Cost: one fit and two filter sums a point; about log n + 100 steps a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
         let copies: Vec<Range<usize>> = copies(&tree.points);
@@ -107,7 +119,7 @@ impl Features {
         let mut part = Part {
             progress,
             from: 0.0,
-            to: if scales.denoise > 0.0 { 0.6 } else { 1.0 },
+            to: 0.6,
         };
         let local: Vec<Local> = par::map_progress(
             groups.len(),
@@ -120,32 +132,30 @@ impl Features {
         let mut features = Features {
             spacing: local.iter().map(|l| l.spacing).collect(),
             normals: local.iter().map(|l| l.normal).collect(),
-            curvature: local.iter().map(|l| l.curvature).collect(),
+            curvature: vec![0.0; local.len()],
             variation: local.iter().map(|l| l.variation).collect(),
             residual: vec![0.0; local.len()],
             noise: scales.noise,
         };
-        if scales.denoise > 0.0 {
-            for (from, to, step) in [(0.6, 0.8, Step::Normals), (0.8, 1.0, Step::Offsets)] {
-                let mut part = Part {
-                    progress: part.progress,
-                    from,
-                    to,
-                };
-                let filtered = par::map_progress(
-                    groups.len(),
-                    20.0,
-                    (Stage::Features, &mut part),
-                    Filter::default,
-                    |i, filter| filter.group(tree, &features, groups[i].clone(), &scales, step),
-                )?
-                .concat();
-                match step {
-                    Step::Normals => features.normals = filtered.iter().map(|f| f.normal).collect(),
-                    Step::Offsets => {
-                        features.residual = filtered.iter().map(|f| f.offset).collect();
-                        features.curvature = filtered.iter().map(|f| f.curvature).collect();
-                    }
+        for (from, to, step) in [(0.6, 0.8, Step::Normals), (0.8, 1.0, Step::Offsets)] {
+            let mut part = Part {
+                progress: part.progress,
+                from,
+                to,
+            };
+            let filtered = par::map_progress(
+                groups.len(),
+                20.0,
+                (Stage::Features, &mut part),
+                Filter::default,
+                |i, filter| filter.group(tree, &features, groups[i].clone(), step),
+            )?
+            .concat();
+            match step {
+                Step::Normals => features.normals = filtered.iter().map(|f| f.normal).collect(),
+                Step::Offsets => {
+                    features.residual = filtered.iter().map(|f| f.offset).collect();
+                    features.curvature = filtered.iter().map(|f| f.curvature).collect();
                 }
             }
         }
@@ -222,12 +232,11 @@ fn quantile(mut values: Vec<f32>, parts: usize) -> f32 {
     values[values.len() / parts]
 }
 
-/// The features of one point.
+/// What the quadric of one point tells.
 #[derive(Debug, Clone, Copy, Default)]
 struct Local {
     spacing: f32,
     normal: Vec3,
-    curvature: f32,
     variation: f32,
     residual: f32,
 }
@@ -304,7 +313,6 @@ impl Scratch {
                 Local {
                     spacing,
                     normal: at.normal.as_vec3(),
-                    curvature: fit.curvature() as f32,
                     variation: fit.variation as f32,
                     residual: at.offset as f32,
                 }
@@ -417,13 +425,6 @@ impl Fit {
             normal: (normal - dx * u - dy * v) / slope,
         }
     }
-
-    /// Frobenius norm of the Hessian, at most 1/radius.
-    fn curvature(&self) -> f64 {
-        let c = &self.c;
-        let square = 4.0 * c[3] * c[3] + 2.0 * c[4] * c[4] + 4.0 * c[5] * c[5];
-        square.sqrt().min(1.0) / self.radius
-    }
 }
 
 /// Mean, eigen-decomposition of the covariance, and count.
@@ -476,29 +477,19 @@ struct Filter {
     normal: [Vec<f32>; 3],
 }
 
-/// Angle (as length of the difference of unit normals) from which neighbours have nothing to say to each other.
-const SAME_SIDE: f32 = 0.5;
-/// Distances along the normal, in standard deviations of the noise, from which they have not: another sheet.
-const SAME_SHEET: f32 = 5.0;
-/// Coordinate of a padding lane: outside of every support, and small enough to be squared.
-const FAR: f32 = 1e6;
-
 impl Filter {
     fn group(
         &mut self,
         tree: &Octree,
         features: &Features,
         range: Range<usize>,
-        scales: &Scales,
         step: Step,
     ) -> Vec<Filtered> {
         let (center, extent) = ball(&tree.points[range.clone()]);
-        let area = features.spacing[range.clone()]
-            .iter()
-            .map(|s| s * s)
-            .sum::<f32>()
-            / range.len() as f32;
-        let support = (area * scales.filter / std::f32::consts::PI).sqrt();
+        let spacing = features.spacing[range.clone()].iter().sum::<f32>() / range.len() as f32;
+        let scales = Scales::new(features.noise, spacing);
+        let support = spacing * (scales.filter / std::f32::consts::PI).sqrt();
+        let sheet = SAME_SHEET * features.noise.max(BEND * spacing);
         let together = extent <= 2.0 * support;
         if together {
             tree.within(center, support + extent, &mut self.candidates);
@@ -511,7 +502,13 @@ impl Filter {
                     self.load(tree, features, center);
                 }
                 let p = tree.points[i] - center;
-                self.at(p, features.normals[i], support, scales, step)
+                self.at(
+                    p,
+                    features.normals[i],
+                    (support, sheet),
+                    scales.denoise,
+                    step,
+                )
             })
             .collect()
     }
@@ -537,15 +534,22 @@ impl Filter {
         }
     }
 
-    fn at(&self, p: Vec3, n: Vec3, support: f32, scales: &Scales, step: Step) -> Filtered {
+    fn at(
+        &self,
+        p: Vec3,
+        n: Vec3,
+        (support, sheet): (f32, f32),
+        denoise: f32,
+        step: Step,
+    ) -> Filtered {
         let one = Lanes::splat(1.0);
         let half = Lanes::splat(0.5);
         let support2 = Lanes::splat(1.0 / (support * support));
-        let sheet2 = Lanes::splat(1.0 / (SAME_SHEET * scales.noise).powi(2));
+        let sheet2 = Lanes::splat(1.0 / (sheet * sheet));
         let side2 = Lanes::splat(1.0 / (SAME_SIDE * SAME_SIDE));
         let clip = |x: Lanes| x.max(Lanes::ZERO);
         let [px, py, pz, nx, ny, nz] = [p.x, p.y, p.z, n.x, n.y, n.z].map(Lanes::splat);
-        let mut sums = [Lanes::ZERO; 5];
+        let mut sums = [Lanes::ZERO; 6];
         let (mut turn, mut way) = (Lanes::ZERO, Lanes::ZERO);
         for block in (0..self.position[0].len()).step_by(LANES) {
             let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.position[axis][block..]));
@@ -562,24 +566,32 @@ impl Filter {
             let side = clip(one - angle2 * side2);
             let root = near * side * sheet;
             let w = root * root;
+            let any_side = near * sheet;
             for (sum, term) in sums.iter_mut().zip([one, away, mx, my, mz]) {
                 *sum += w * term;
             }
-            let any_side = near * sheet;
+            sums[5] += any_side * any_side;
             turn += any_side * angle2;
             way += any_side * length2;
         }
-        let [total, offset, mx, my, mz] = sums.map(Lanes::sum);
+        let [total, offset, mx, my, mz, any_side] = sums.map(Lanes::sum);
         let (turn, way) = (turn.sum(), way.sum());
         match step {
-            Step::Normals => Filtered {
-                normal: Vec3::new(mx, my, mz).normalize_or(n),
-                ..Filtered::default()
-            },
+            Step::Normals => {
+                // Without noise the quadric's normal is the better one, but for the neighbours of a crease.
+                let refused = 1.0 - total / any_side.max(f32::MIN_POSITIVE);
+                let crease = (refused - NEAR_CREASE.start) / (NEAR_CREASE.end - NEAR_CREASE.start);
+                let filtered = Vec3::new(mx, my, mz).normalize_or(n);
+                let mix = denoise.max(crease.clamp(0.0, 1.0));
+                Filtered {
+                    normal: n.lerp(filtered, mix).normalize_or(n),
+                    ..Filtered::default()
+                }
+            }
             Step::Offsets => Filtered {
                 normal: n,
                 offset: if total > 0.0 {
-                    scales.denoise * offset / total
+                    denoise * offset / total
                 } else {
                     0.0
                 },
@@ -639,7 +651,8 @@ mod tests {
             );
             if noise == 0.0 {
                 // Both principal curvatures are 4: the Frobenius norm is 4 √2.
-                assert!((median(&f.curvature) - 4.0 * 2f64.sqrt()).abs() < 0.3);
+                let curvature = median(&f.curvature);
+                assert!((curvature - 4.0 * 2f64.sqrt()).abs() < 0.3, "{curvature}");
             }
             // Area a point: 4π 0.0625 / 8000.
             let spacing = (4.0 * std::f64::consts::PI * 0.0625 / 8000.0f64).sqrt();
