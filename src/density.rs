@@ -224,8 +224,12 @@ impl Groups {
         for (range, ring) in self.ranges.iter().zip(&rings) {
             for k in range.clone() {
                 let p = tree.points[k];
-                let limit =
-                    |&j: &u32| wanted[j as usize] + GRADING * p.distance(self.centers[j as usize]);
+                // Inside its disc a group's spacing holds as it is.
+                let limit = |&j: &u32| {
+                    let j = j as usize;
+                    let radius = (self.area[j] / std::f64::consts::PI).sqrt() as f32;
+                    wanted[j] + GRADING * (p.distance(self.centers[j]) - radius).max(0.0)
+                };
                 let least = ring.iter().map(limit).fold(f32::INFINITY, f32::min);
                 // Where all points are equal any spacing will do, but not none.
                 spacing[k] = least.max(SMALLEST);
