@@ -45,6 +45,7 @@ pub mod kernel;
 pub mod cloud;
 pub mod octree;
 pub mod features;
+mod filter;
 pub mod density;
 pub mod fcm;
 pub mod clusters;
