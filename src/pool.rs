@@ -44,23 +44,3 @@ pub fn lend_thread() {
     drop(wanted);
     thread.run();
 }
-
-#[cfg(all(test, not(target_arch = "wasm32")))]
-mod tests {
-    #[test]
-    fn lent_threads_become_the_pool() {
-        for _ in 0..3 {
-            std::thread::spawn(super::lend_thread);
-        }
-        super::build(3).unwrap();
-        assert_eq!(crate::par::threads(), 3);
-        let squares = crate::par::map(1000, || (), |i, ()| i * i);
-        assert!(
-            squares
-                .iter()
-                .enumerate()
-                .all(|(i, &square)| square == i * i)
-        );
-        assert!(super::build(3).is_err());
-    }
-}
