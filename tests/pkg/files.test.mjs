@@ -74,6 +74,10 @@ test('inspect tells what a cloud is like', async () => {
 
   let seed = 1;
   const random = () => (seed = (seed * 16_807) % 2_147_483_647) / 2_147_483_647 - 0.5;
-  const noisy = cloud.positions.map((x, i) => (i % 3 === 0 ? 100 + (x - 100) * (1 + 0.02 * random()) : x));
-  assert.ok((await inspect({ positions: noisy })).noise > 5 * info.noise + 0.01);
+  const factors = Array.from({ length: 4000 }, () => 1 + 0.02 * random());
+  const center = [100, 0, 0];
+  const noisy = cloud.positions.map((x, i) => center[i % 3] + (x - center[i % 3]) * factors[Math.floor(i / 3)]);
+  const { noise } = await inspect({ positions: noisy });
+  const deviation = (10 * 0.02) / Math.sqrt(12);
+  assert.ok(noise > deviation / 2 && noise < 2 * deviation, `noise ${noise} where ${deviation} was added`);
 });
