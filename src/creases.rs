@@ -193,14 +193,7 @@ fn meet_planes(planes: &[(DVec3, DVec3)]) -> Option<Crease> {
     let mut matrix = [0.0; 6];
     let (mut right, mut normal) = (DVec3::ZERO, DVec3::ZERO);
     for &(point, n) in planes {
-        let products = [
-            n.x * n.x,
-            n.x * n.y,
-            n.x * n.z,
-            n.y * n.y,
-            n.y * n.z,
-            n.z * n.z,
-        ];
+        let products = crate::linalg::outer(n);
         matrix.iter_mut().zip(products).for_each(|(m, p)| *m += p);
         right += n * n.dot(point - mean);
         normal += n;

@@ -337,14 +337,7 @@ fn norm_transform(norm: Norm, points: &[Vec3], mean: DVec3) -> ([DVec3; 3], [DVe
     let mut covariance = [0.0; 6];
     for p in points {
         let d = p.as_dvec3() - mean;
-        let products = [
-            d.x * d.x,
-            d.x * d.y,
-            d.x * d.z,
-            d.y * d.y,
-            d.y * d.z,
-            d.z * d.z,
-        ];
+        let products = crate::linalg::outer(d);
         for (sum, product) in covariance.iter_mut().zip(products) {
             *sum += product / points.len() as f64;
         }

@@ -427,14 +427,7 @@ fn covariance(positions: impl Iterator<Item = DVec3> + Clone) -> (DVec3, SymEige
     let mut m = [0.0; 6];
     for p in positions {
         let d = p - mean;
-        let products = [
-            d.x * d.x,
-            d.x * d.y,
-            d.x * d.z,
-            d.y * d.y,
-            d.y * d.z,
-            d.z * d.z,
-        ];
+        let products = crate::linalg::outer(d);
         for (sum, product) in m.iter_mut().zip(products) {
             *sum += product;
         }

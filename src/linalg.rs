@@ -11,6 +11,18 @@ pub struct SymEigen {
     pub vectors: [DVec3; 3],
 }
 
+/// v vᵀ as `[xx, xy, xz, yy, yz, zz]`.
+pub fn outer(v: DVec3) -> [f64; 6] {
+    [
+        v.x * v.x,
+        v.x * v.y,
+        v.x * v.z,
+        v.y * v.y,
+        v.y * v.z,
+        v.z * v.z,
+    ]
+}
+
 /// Decomposes the symmetric matrix `[xx, xy, xz, yy, yz, zz]` by cyclic Jacobi rotations (Golub and Van Loan, *Matrix
 /// Computations*, section 8.5): accurate to rounding for close and for zero eigenvalues, where the closed formula is not.
 pub fn sym_eigen(m: &[f64; 6]) -> SymEigen {

@@ -135,14 +135,7 @@ fn flatness(points: &[Vec3], noise: f64) -> f64 {
     let mut m = [0.0; 6];
     for p in points {
         let d = p.as_dvec3() - mean;
-        let products = [
-            d.x * d.x,
-            d.x * d.y,
-            d.x * d.z,
-            d.y * d.y,
-            d.y * d.z,
-            d.z * d.z,
-        ];
+        let products = crate::linalg::outer(d);
         for (sum, product) in m.iter_mut().zip(products) {
             *sum += product / n;
         }

@@ -131,14 +131,7 @@ impl Sums {
         let w = libm::pow(u, m) * area.max(f64::MIN_POSITIVE);
         self.weight += w;
         self.position += w * x;
-        let products = [
-            n.x * n.x,
-            n.x * n.y,
-            n.x * n.z,
-            n.y * n.y,
-            n.y * n.z,
-            n.z * n.z,
-        ];
+        let products = crate::linalg::outer(n);
         for (sum, product) in self.normals.iter_mut().zip(products) {
             *sum += w * product;
         }
