@@ -14,13 +14,13 @@ use glam::{DVec3, Vec3};
 use crate::density::Density;
 use crate::error::Result;
 use crate::features::Features;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes, places_within};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::power::{Fuzzifier, Power};
 use crate::progress::{Progress, Stage};
 
-/// How far from a cell's box centres still count, in wanted spacings. Every point of the box has its nearest centre
+/// How far from the box of a cell, or of a block of its points, centres still count, in wanted spacings. Every point of the box has its nearest centre
 /// within about 0.7 spacings; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
 const REACH: f32 = 1.5;
 
@@ -85,15 +85,26 @@ struct Cell {
     reach: Vec<u32>,
 }
 
-/// The points of one cell, structure of arrays padded to whole lanes with weight 0, and rows of one block.
+/// The points of one cell and the centres within its reach in the cell's coordinates, structure of arrays in whole lanes,
+/// and what one block of points needs.
 #[derive(Default)]
 struct Scratch {
+    /// Lanes beyond the last point repeat it with weight 0.
     x: [Vec<f32>; 3],
     weight: Vec<f32>,
-    centers: Vec<Vec3>,
-    share: Vec<Lanes>,
+    /// Wanted spacing.
+    spacing: Vec<f32>,
+    /// Lanes beyond the last centre are [`FAR`].
+    center: [Vec<f32>; 3],
     sums: Vec<[Lanes; 4]>,
+    /// Centres within reach of the block, as places in the cell's `reach`.
+    near: Vec<u32>,
+    /// Squared distance of the nearest centre over that of each one near.
+    ratio: Vec<Lanes>,
 }
+
+/// Coordinate of a padding centre: out of reach, and small enough to be squared.
+const FAR: f32 = 1e6;
 
 /// Clusters the cloud: `quotas[i]` centres start in `cells[i]`.
 pub fn cluster(
@@ -129,22 +140,20 @@ pub fn cluster(
         }
     }
     gather(&mut cells, &centers);
-    let shares = par::map(
-        cells.len(),
-        || (),
-        |i, _| {
-            let cell = &cells[i];
-            let of = |k| {
-                Shares::of(
-                    samples.points[k],
-                    &centers,
-                    cell.reach.iter().copied(),
-                    settling.fuzzifier,
-                )
-            };
-            cell.range.clone().map(of).collect::<Vec<Shares>>()
-        },
-    );
+    let fuzzifier = Fuzzifier::new(settling.fuzzifier);
+    let shares = par::map(cells.len(), Scratch::default, |i, scratch| {
+        let cell = &cells[i];
+        scratch.load(samples, cell, &centers);
+        let mut shares = Vec::with_capacity(cell.range.len());
+        for start in cell.range.clone().step_by(LANES) {
+            scratch.narrow(start - cell.range.start);
+            for k in start..(start + LANES).min(cell.range.end) {
+                let near = scratch.near.iter().map(|&c| cell.reach[c as usize]);
+                shares.push(Shares::of(samples.points[k], &centers, near, fuzzifier));
+            }
+        }
+        shares
+    });
     Ok(Clusters {
         centers,
         shares: shares.concat(),
@@ -175,42 +184,73 @@ impl Cell {
 /// Farthest-first traversal in every cell, in units of the wanted spacing (Gonzalez, "Clustering to minimize the
 /// maximum intercluster distance", 1985): deterministic, and at four iterations 20-25 % less error than random starts.
 fn start(samples: Samples, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
-    let chosen = par::map(ranges.len(), Vec::new, |i, far: &mut Vec<f32>| {
+    let chosen = par::map(ranges.len(), Traversal::default, |i, traversal| {
         let points = &samples.points[ranges[i].clone()];
-        let spacing = &samples.density.spacing[ranges[i].clone()];
+        traversal.load(points, &samples.density.spacing[ranges[i].clone()]);
         let mean = points.iter().sum::<Vec3>() / points.len() as f32;
-        far.clear();
-        far.extend(points.iter().map(|p| p.distance_squared(mean)));
-        let mut next = lowest(far);
-        far.fill(f32::INFINITY);
+        let away = |&a: &usize, &b: &usize| {
+            let distance = |k: usize| points[k].distance_squared(mean);
+            distance(a).total_cmp(&distance(b))
+        };
+        let mut next = (0..points.len()).min_by(away).unwrap_or(0);
         let mut chosen = Vec::with_capacity(quotas[i]);
         while chosen.len() < quotas[i] {
             chosen.push(points[next]);
-            // Taken points fall below all others, so that equal points are taken one by one.
-            far[next] = -1.0;
-            for (k, f) in far.iter_mut().enumerate() {
-                *f = f.min(points[k].distance_squared(points[next]) / (spacing[k] * spacing[k]));
-            }
-            next = highest(far);
+            next = traversal.take(next);
         }
         chosen
     });
     chosen.concat()
 }
 
-fn lowest(values: &[f32]) -> usize {
-    (0..values.len())
-        .min_by(|&a, &b| values[a].total_cmp(&values[b]))
-        .unwrap_or(0)
+/// The points of one cell and how far each is from those taken, in wanted spacings, squared; structure of arrays in whole
+/// lanes.
+#[derive(Default)]
+struct Traversal {
+    x: [Vec<f32>; 3],
+    /// 1/h²; 0 for lanes beyond the last point.
+    scale: Vec<f32>,
+    far: Vec<f32>,
 }
 
-fn highest(values: &[f32]) -> usize {
-    // The first of equals.
-    (0..values.len())
-        .rev()
-        .max_by(|&a, &b| values[a].total_cmp(&values[b]))
-        .unwrap_or(0)
+impl Traversal {
+    fn load(&mut self, points: &[Vec3], spacing: &[f32]) {
+        let padded = points.len().next_multiple_of(LANES);
+        for (axis, x) in self.x.iter_mut().enumerate() {
+            x.clear();
+            x.extend(points.iter().map(|p| p[axis]));
+            x.resize(padded, 0.0);
+        }
+        self.scale.clear();
+        self.scale
+            .extend(spacing.iter().map(|h| 1.0 / (h * h).max(f32::MIN_POSITIVE)));
+        self.scale.resize(padded, 0.0);
+        self.far.clear();
+        self.far.resize(points.len(), f32::INFINITY);
+        self.far.resize(padded, TAKEN);
+    }
+
+    /// Takes a point and returns the farthest one that is left, the first of equals.
+    fn take(&mut self, taken: usize) -> usize {
+        self.far[taken] = TAKEN;
+        let [x, y, z] = [0, 1, 2].map(|axis| Lanes::splat(self.x[axis][taken]));
+        let mut farthest = Lanes::splat(TAKEN);
+        for block in (0..self.far.len()).step_by(LANES) {
+            let [dx, dy, dz] =
+                [(0, x), (1, y), (2, z)].map(|(axis, t)| Lanes::load(&self.x[axis][block..]) - t);
+            let scale = Lanes::load(&self.scale[block..]);
+            let distance2 = (dx * dx + dy * dy + dz * dz) * scale;
+            let far = distance2.min(Lanes::load(&self.far[block..]));
+            self.far[block..block + LANES].copy_from_slice(&far.0);
+            farthest = farthest.max(far);
+        }
+        let farthest = farthest.0.into_iter().fold(TAKEN, f32::max);
+        self.far.iter().position(|&f| f == farthest).unwrap_or(0)
+    }
 }
+
+/// Below every distance, so that equal points are taken one by one.
+const TAKEN: f32 = -1.0;
 
 /// Finds the centres within each cell's reach; at least the nearest one.
 fn gather(cells: &mut [Cell], centers: &[Vec3]) {
@@ -277,59 +317,92 @@ fn sweep<P: Power<f32> + Send + Sync>(
 
 impl Scratch {
     fn load(&mut self, samples: Samples, cell: &Cell, centers: &[Vec3]) {
-        let n = cell.range.len();
-        let padded = n.div_ceil(LANES) * LANES;
+        let padded = cell.range.len().next_multiple_of(LANES);
         let local = |p: Vec3| (p - cell.origin) / cell.unit;
-        for x in &mut self.x {
+        let last = local(samples.points[cell.range.end - 1]);
+        for (axis, x) in self.x.iter_mut().enumerate() {
             x.clear();
+            x.extend(
+                samples.points[cell.range.clone()]
+                    .iter()
+                    .map(|&p| local(p)[axis]),
+            );
+            x.resize(padded, last[axis]);
         }
+        self.spacing.clear();
         self.weight.clear();
         for k in cell.range.clone() {
-            let p = local(samples.points[k]);
-            self.x[0].push(p.x);
-            self.x[1].push(p.y);
-            self.x[2].push(p.z);
             // w = ρ²/f with ρ = 1/h² and 1/f the area of surface that the point stands for.
-            let h2 = (samples.density.spacing[k] / cell.unit).powi(2);
+            let h = samples.density.spacing[k] / cell.unit;
             let area = (samples.features.spacing[k] / cell.unit).powi(2);
-            self.weight.push(area / (h2 * h2));
+            self.spacing.push(h);
+            self.weight.push(area / (h * h * h * h));
         }
-        for x in &mut self.x {
-            x.resize(padded, 0.0);
-        }
+        self.spacing.resize(padded, 0.0);
         self.weight.resize(padded, 0.0);
-        self.centers.clear();
-        self.centers
-            .extend(cell.reach.iter().map(|&i| local(centers[i as usize])));
-        self.share.resize(cell.reach.len(), Lanes::ZERO);
+        for (axis, x) in self.center.iter_mut().enumerate() {
+            x.clear();
+            x.extend(cell.reach.iter().map(|&i| local(centers[i as usize])[axis]));
+            x.resize(cell.reach.len().next_multiple_of(LANES), FAR);
+        }
         self.sums.clear();
         self.sums.resize(cell.reach.len(), [Lanes::ZERO; 4]);
+    }
+
+    /// Finds the centres within [`REACH`] of the block of points that starts at `block`; all where there is none.
+    fn narrow(&mut self, block: usize) {
+        let fold = |x: &[f32], pick: fn(f32, f32) -> f32| {
+            let lanes = &x[block..block + LANES];
+            lanes.iter().copied().reduce(pick).unwrap_or(0.0)
+        };
+        let reach = REACH * fold(&self.spacing, f32::max);
+        let corners = [0, 1, 2].map(|axis| {
+            let x = &self.x[axis];
+            [fold(x, f32::min), fold(x, f32::max)].map(Lanes::splat)
+        });
+        let count = self.sums.len();
+        let center = &self.center;
+        let distance2 = |start: usize| {
+            let mut sum = Lanes::ZERO;
+            for (center, [lo, hi]) in center.iter().zip(corners) {
+                let x = Lanes::load(&center[start..]);
+                let away = (lo - x).max(x - hi).max(Lanes::ZERO);
+                sum += away * away;
+            }
+            sum
+        };
+        places_within(count, reach * reach, distance2, &mut self.near);
+        if self.near.is_empty() {
+            self.near.extend(0..count as u32);
+        }
     }
 
     /// Memberships of eq. 5 block by block, summed for eq. 2 as they come.
     fn accumulate<P: Power<f32>>(&mut self, power: P) {
         for block in (0..self.weight.len()).step_by(LANES) {
+            self.narrow(block);
             let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.x[axis][block..]));
             let weight = Lanes::load(&self.weight[block..]);
 
+            self.ratio.clear();
             let mut nearest = Lanes::splat(f32::INFINITY);
-            for (distance, v) in self.share.iter_mut().zip(&self.centers) {
-                let (dx, dy, dz) = (
-                    x - Lanes::splat(v.x),
-                    y - Lanes::splat(v.y),
-                    z - Lanes::splat(v.z),
-                );
-                *distance = dx * dx + dy * dy + dz * dz + Lanes::splat(TINY);
-                nearest = nearest.min(*distance);
+            for &near in &self.near {
+                let v = [0, 1, 2].map(|axis| Lanes::splat(self.center[axis][near as usize]));
+                let (dx, dy, dz) = (x - v[0], y - v[1], z - v[2]);
+                let distance2 = dx * dx + dy * dy + dz * dz + Lanes::splat(TINY);
+                nearest = nearest.min(distance2);
+                self.ratio.push(distance2);
             }
             let mut total = Lanes::ZERO;
-            for share in &mut self.share {
-                *share = (nearest / *share).map(|ratio| power.share(ratio));
-                total += *share;
+            for ratio in &mut self.ratio {
+                *ratio = nearest / *ratio;
+                total += ratio.map(|r| power.share(r));
             }
-            let inverse = Lanes::splat(1.0) / total;
-            for (share, sums) in self.share.iter().zip(&mut self.sums) {
-                let w = weight * (*share * inverse).map(|u| power.raise(u));
+            // u = share/total, and u^m = share r / total^m, as share^m = r^(m/(m-1)).
+            let scale = weight * (Lanes::splat(1.0) / total).map(|u| power.raise(u));
+            for (&ratio, &near) in self.ratio.iter().zip(&self.near) {
+                let w = scale * ratio * ratio.map(|r| power.share(r));
+                let sums = &mut self.sums[near as usize];
                 sums[0] += w;
                 sums[1] += w * x;
                 sums[2] += w * y;
@@ -341,7 +414,12 @@ impl Scratch {
 
 impl Shares {
     /// Eq. 5 over the nearest centres of `reach` only.
-    pub fn of(p: Vec3, centers: &[Vec3], reach: impl Iterator<Item = u32>, m: f64) -> Shares {
+    pub fn of(
+        p: Vec3,
+        centers: &[Vec3],
+        reach: impl Iterator<Item = u32>,
+        fuzzifier: Fuzzifier,
+    ) -> Shares {
         let mut nearest = [(f32::INFINITY, 0); SHARES];
         for i in reach {
             let d = p.distance_squared(centers[i as usize]);
@@ -359,7 +437,7 @@ impl Shares {
             if d == closest {
                 1.0
             } else {
-                libm::pow(f64::from(closest) / f64::from(d), 1.0 / (m - 1.0))
+                fuzzifier.share(f64::from(closest) / f64::from(d))
             }
         });
         let total: f64 = u.iter().sum();

@@ -1,13 +1,11 @@
-//! Distances from points to a mesh, and to a surface of which only points with normals are known.
+//! Distances from points to a mesh.
 
 use crate::error::Result;
-use crate::kernel::wendland;
-use crate::octree::{Neighbor, Octree};
+use crate::octree::Octree;
 use crate::par;
 use crate::progress::{Progress, Stage};
 use crate::report::DistanceStats;
 use glam::{DVec3, Vec3};
-use nalgebra::{Matrix6, Vector6};
 
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 256;
@@ -161,123 +159,6 @@ pub fn mesh_distance(
             distance2.sqrt()
         },
     )
-}
-
-/// Reduced points around a query that make up its local surface.
-const NEIGHBORS: usize = 8;
-/// Faces or sheets among them that are tried: at a corner three meet.
-const FACES: usize = 3;
-/// Neighbours whose normals differ by more (cosine of 60°) belong to another face.
-const FACE_COSINE: f64 = 0.5;
-/// Neighbours that stand out by more belong to another sheet: the offset along the mean of both normals over the
-/// distance, which on one curved sheet is of second order in the distance.
-const SHEET_SINE: f64 = 0.2;
-/// Ridge on the quadric's second derivatives, relative to the weight of the data: a plane where the data leave them
-/// open, unnoticeable elsewhere.
-const RIDGE: f64 = 1e-6;
-
-/// Distances of `points` to the surface that reduced points stand for (all in the unit frame).
-///
-/// Of the 8 nearest reduced points those on the nearest one's face and sheet give a quadric height field over their
-/// mean tangent plane, fitted to their positions and normals by least squares with Wendland weights that vanish at 1.1
-/// times the distance of the eighth. The distance is to that quadric's tangent plane over `x`, at most the distance to
-/// the nearest reduced point. Points that are left are tried as further faces, and the nearest face counts. So points
-/// of a curved surface have a distance of fourth order in the spacing, where to tangent planes it is second.
-///
-/// `reduced` is the tree of the reduced points, `normals` theirs, unit and of any sign, in the order from which the
-/// tree was built.
-///
-/// # Errors
-/// [`crate::Error::Cancelled`] if `progress` asks for it.
-pub fn cloud_distance(
-    points: &[Vec3],
-    reduced: &Octree,
-    normals: &[Vec3],
-    progress: &mut dyn Progress,
-) -> Result<DistanceStats> {
-    by_task(
-        points,
-        2.0,
-        progress,
-        || (Vec::new(), Vec::new()),
-        |x, (found, around)| {
-            reduced.knn(x, NEIGHBORS, found);
-            around.clear();
-            around.extend(found.iter().map(|n: &Neighbor| {
-                let normal = normals[reduced.order[n.index as usize] as usize];
-                (
-                    (reduced.points[n.index as usize] - x).as_dvec3(),
-                    normal.as_dvec3(),
-                )
-            }));
-            surface_distance(around)
-        },
-    )
-}
-
-/// The distance from the origin to the surface of these points with normals, nearest first; empties them.
-fn surface_distance(around: &mut Vec<(DVec3, DVec3)>) -> f64 {
-    let (Some(first), Some(last)) = (around.first(), around.last()) else {
-        return 0.0;
-    };
-    let radius = 1.1 * last.0.length();
-    let mut least = first.0.length();
-    for _ in 0..FACES {
-        let Some(&(p, n)) = around.first() else { break };
-        if least == 0.0 {
-            break;
-        }
-        let mut face = [(DVec3::ZERO, DVec3::ZERO); NEIGHBORS];
-        let mut count = 0;
-        around.retain(|&(q, m)| {
-            let agreement = m.dot(n);
-            let mean = (n + m * agreement.signum()) / 2.0;
-            let on_face = agreement.abs() >= FACE_COSINE
-                && mean.dot(q - p).abs() <= SHEET_SINE * q.distance(p);
-            if on_face || count == 0 {
-                face[count] = (q, m * agreement.signum());
-                count += 1;
-                return false;
-            }
-            true
-        });
-        least = least.min(quadric_distance(&face[..count], radius));
-    }
-    least
-}
-
-/// The distance from the origin to the tangent plane over it of the quadric through these points with normals.
-fn quadric_distance(face: &[(DVec3, DVec3)], radius: f64) -> f64 {
-    let weight = |q: DVec3| wendland(q.length() / radius).0;
-    let mean: DVec3 = face.iter().map(|&(q, m)| m * weight(q)).sum();
-    let up = mean.normalize_or(face[0].1);
-    let (u, v) = up.any_orthonormal_pair();
-    // Height a + b u + c v + d u²/2 + e u v + f v²/2 in units of the radius; rows for the height and both slopes.
-    let mut matrix = Matrix6::zeros();
-    let mut right = Vector6::zeros();
-    let mut total = 0.0;
-    for &(q, m) in face {
-        let (x, y, z) = (u.dot(q) / radius, v.dot(q) / radius, up.dot(q) / radius);
-        let steep = m.dot(up).max(FACE_COSINE);
-        let rows = [
-            (Vector6::new(1.0, x, y, x * x / 2.0, x * y, y * y / 2.0), z),
-            (Vector6::new(0.0, 1.0, 0.0, x, y, 0.0), -m.dot(u) / steep),
-            (Vector6::new(0.0, 0.0, 1.0, 0.0, x, y), -m.dot(v) / steep),
-        ];
-        total += weight(q);
-        for (row, value) in rows {
-            matrix += row * row.transpose() * weight(q);
-            right += row * (value * weight(q));
-        }
-    }
-    for k in 3..6 {
-        matrix[(k, k)] += RIDGE * total;
-    }
-    let Some(cholesky) = matrix.cholesky() else {
-        return f64::INFINITY;
-    };
-    let height = cholesky.solve(&right);
-    radius * height[0].abs() / (1.0 + height[1] * height[1] + height[2] * height[2]).sqrt()
 }
 
 /// Statistics of `distance` over the points, in parallel; `weight` is about how many microseconds a point takes.

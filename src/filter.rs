@@ -1,9 +1,11 @@
 //! The bilateral filter of the features, steps 2 and 3 of [`crate::features`]: normals, distances to the surface and
 //! curvature from neighbours on the same side of every crease.
 
-use crate::features::{Features, Scales, ball};
+use crate::features::Features;
 use crate::lanes::{LANES, Lanes};
-use crate::octree::{Neighbor, Octree};
+use crate::neighborhood::{Block, Neighborhood, bounds};
+use crate::noise::Scales;
+use crate::octree::Octree;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -15,8 +17,6 @@ const SAME_SHEET: f32 = 5.0;
 const NEAR_CREASE: Range<f32> = 0.3..0.6;
 /// What a clean surface is allowed in place of noise, in spacings: the filter's formula leaves third-order terms.
 const BEND: f32 = 0.05;
-/// Coordinate of a padding lane: outside of every support, and small enough to be squared.
-const FAR: f32 = 1e6;
 
 /// What a pass of the filter finds.
 #[derive(Debug, Clone, Copy)]
@@ -33,141 +33,203 @@ pub(crate) struct Filtered {
     pub(crate) curvature: f32,
 }
 
-/// Memory of one worker of the filter: neighbours of a group, structure of arrays padded to whole lanes with points that
-/// are out of every support.
+/// Memory of one worker of the filter.
 #[derive(Default)]
 pub(crate) struct Filter {
-    candidates: Vec<Neighbor>,
-    position: [Vec<f32>; 3],
-    normal: [Vec<f32>; 3],
+    cell: Neighborhood,
+    own: Neighborhood,
+}
+
+/// One block with the scales of its sums.
+struct Sums<'a> {
+    features: &'a Features,
+    block: &'a Block,
+    hood: &'a Neighborhood,
+    /// Normals of the block's points.
+    normal: [Lanes; 3],
+    /// Radius of the support.
+    support: f32,
+    /// Distance along the normal from which a neighbour is of another sheet.
+    sheet: f32,
+}
+
+/// A neighbour as each lane sees it.
+struct Pair {
+    /// (1 - d²/R²), not below 0.
+    near: Lanes,
+    /// The same of the distance along the normals over [`SAME_SHEET`].
+    sheet: Lanes,
+    /// The same of the angle over [`SAME_SIDE`].
+    side: Lanes,
+    length2: Lanes,
+    angle2: Lanes,
+    /// ½ (n_i + n_j)·(x_i - x_j).
+    away: Lanes,
+    /// The neighbour's normal, turned to the lane's side.
+    normal: [Lanes; 3],
 }
 
 impl Filter {
     /// One pass over the points `range`, which lie close together.
-    pub(crate) fn group(
+    pub(crate) fn cell(
         &mut self,
         tree: &Octree,
         features: &Features,
         range: Range<usize>,
         step: Step,
     ) -> Vec<Filtered> {
-        let (center, extent) = ball(&tree.points[range.clone()]);
-        let spacing = features.spacing[range.clone()].iter().sum::<f32>() / range.len() as f32;
-        let scales = Scales::new(features.noise, spacing);
-        let support = spacing * (scales.filter / std::f32::consts::PI).sqrt();
-        let sheet = SAME_SHEET * features.noise.max(BEND * spacing);
-        let together = extent <= 2.0 * support;
-        if together {
-            tree.within(center, support + extent, &mut self.candidates);
-            self.load(tree, features, center);
-        }
-        range
-            .map(|i| {
-                if !together {
-                    tree.within(tree.points[i], support, &mut self.candidates);
-                    self.load(tree, features, center);
+        let mut filtered = Vec::with_capacity(range.len());
+        let support = |block: &Block| {
+            let scales = Scales::new(features.noise, typical_spacing(features, block));
+            (
+                typical_spacing(features, block) * (scales.filter / std::f32::consts::PI).sqrt(),
+                scales.denoise,
+            )
+        };
+        let blocks = || Block::all(&tree.points, range.clone());
+        let widest = blocks().map(|b| support(&b).0).fold(0.0, f32::max);
+        let corners = bounds(&tree.points[range.clone()]);
+        let together = self.cell.gather(tree, corners, widest);
+        for block in blocks() {
+            let (support, denoise) = support(&block);
+            if together {
+                self.cell.narrow(&block, support);
+                let sums = Sums::new(features, &block, &self.cell, support);
+                filtered.extend(sums.step(step, denoise));
+            } else {
+                for i in block.range.clone() {
+                    self.own.gather_at(tree, tree.points[i], support);
+                    let block = Block::new(&tree.points, i..i + 1);
+                    let sums = Sums::new(features, &block, &self.own, support);
+                    filtered.extend(sums.step(step, denoise));
                 }
-                let p = tree.points[i] - center;
-                self.at(
-                    p,
-                    features.normals[i],
-                    (support, sheet),
-                    scales.denoise,
-                    step,
-                )
-            })
-            .collect()
+            }
+        }
+        filtered
     }
+}
 
-    fn load(&mut self, tree: &Octree, features: &Features, origin: Vec3) {
-        let padded = self.candidates.len().next_multiple_of(LANES);
-        for axis in 0..3 {
-            let of = |v: &[Vec3], j: u32| v[j as usize][axis];
-            let position = self
-                .candidates
-                .iter()
-                .map(|c| of(&tree.points, c.index) - origin[axis]);
-            self.position[axis].clear();
-            self.position[axis].extend(position);
-            self.position[axis].resize(padded, FAR);
-            self.normal[axis].clear();
-            self.normal[axis].extend(
-                self.candidates
-                    .iter()
-                    .map(|c| of(&features.normals, c.index)),
-            );
-            self.normal[axis].resize(padded, 0.0);
+/// The median of a block's spacings: stragglers among its points have far larger ones.
+fn typical_spacing(features: &Features, block: &Block) -> f32 {
+    let mut spacing = [0.0; LANES];
+    let spacing = &mut spacing[..block.range.len()];
+    spacing.copy_from_slice(&features.spacing[block.range.clone()]);
+    spacing.sort_unstable_by(f32::total_cmp);
+    spacing[spacing.len() / 2]
+}
+
+impl<'a> Sums<'a> {
+    fn new(
+        features: &'a Features,
+        block: &'a Block,
+        hood: &'a Neighborhood,
+        support: f32,
+    ) -> Sums<'a> {
+        let spacing = typical_spacing(features, block);
+        Sums {
+            features,
+            block,
+            hood,
+            normal: [0, 1, 2].map(|axis| block.lanes(|i| features.normals[i][axis])),
+            support: support.max(f32::MIN_POSITIVE.sqrt()),
+            sheet: (SAME_SHEET * features.noise.max(BEND * spacing)).max(f32::MIN_POSITIVE.sqrt()),
         }
     }
 
-    fn at(
-        &self,
-        p: Vec3,
-        n: Vec3,
-        (support, sheet): (f32, f32),
-        denoise: f32,
-        step: Step,
-    ) -> Filtered {
+    fn pairs(&self) -> impl Iterator<Item = Pair> {
         let one = Lanes::splat(1.0);
         let half = Lanes::splat(0.5);
-        let support2 = Lanes::splat(1.0 / (support * support));
-        let sheet2 = Lanes::splat(1.0 / (sheet * sheet));
+        let support2 = Lanes::splat(1.0 / (self.support * self.support));
+        let sheet2 = Lanes::splat(1.0 / (self.sheet * self.sheet));
         let side2 = Lanes::splat(1.0 / (SAME_SIDE * SAME_SIDE));
         let clip = |x: Lanes| x.max(Lanes::ZERO);
-        let [px, py, pz, nx, ny, nz] = [p.x, p.y, p.z, n.x, n.y, n.z].map(Lanes::splat);
-        let mut sums = [Lanes::ZERO; 6];
-        let (mut turn, mut way) = (Lanes::ZERO, Lanes::ZERO);
-        for block in (0..self.position[0].len()).step_by(LANES) {
-            let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.position[axis][block..]));
-            let [mx, my, mz] = [0, 1, 2].map(|axis| Lanes::load(&self.normal[axis][block..]));
+        let [px, py, pz] = self.block.at;
+        let [nx, ny, nz] = self.normal;
+        self.hood.near().map(move |(j, [x, y, z])| {
+            let [mx, my, mz] = self.features.normals[j].to_array().map(Lanes::splat);
             let (dx, dy, dz) = (px - x, py - y, pz - z);
             let length2 = dx * dx + dy * dy + dz * dz;
-            let near = clip(one - length2 * support2);
             let dot = nx * mx + ny * my + nz * mz;
             let sign = dot.map(|d| 1f32.copysign(d));
             let (mx, my, mz) = (mx * sign, my * sign, mz * sign);
             let angle2 = clip(Lanes::splat(2.0) - (dot + dot) * sign);
             let away = half * ((nx + mx) * dx + (ny + my) * dy + (nz + mz) * dz);
-            let sheet = clip(one - away * away * sheet2);
-            let side = clip(one - angle2 * side2);
-            let root = near * side * sheet;
+            Pair {
+                near: clip(one - length2 * support2),
+                sheet: clip(one - away * away * sheet2),
+                side: clip(one - angle2 * side2),
+                length2,
+                angle2,
+                away,
+                normal: [mx, my, mz],
+            }
+        })
+    }
+
+    fn step(&self, step: Step, denoise: f32) -> impl Iterator<Item = Filtered> {
+        let found = match step {
+            Step::Normals => self.normals(denoise),
+            Step::Offsets => self.offsets(denoise),
+        };
+        found.into_iter().take(self.block.range.len())
+    }
+
+    fn normals(&self, denoise: f32) -> [Filtered; LANES] {
+        let mut sums = [Lanes::ZERO; 5];
+        for pair in self.pairs() {
+            let any_side = pair.near * pair.sheet;
+            let root = any_side * pair.side;
             let w = root * root;
-            let any_side = near * sheet;
-            for (sum, term) in sums.iter_mut().zip([one, away, mx, my, mz]) {
-                *sum += w * term;
+            let [x, y, z] = pair.normal.map(|m| w * m);
+            for (sum, term) in sums.iter_mut().zip([x, y, z, w, any_side * any_side]) {
+                *sum += term;
             }
-            sums[5] += any_side * any_side;
-            turn += any_side * angle2;
-            way += any_side * length2;
         }
-        let [total, offset, mx, my, mz, any_side] = sums.map(Lanes::sum);
-        let (turn, way) = (turn.sum(), way.sum());
-        match step {
-            Step::Normals => {
-                // Without noise the quadric's normal is the better one, but for the neighbours of a crease.
-                let refused = 1.0 - total / any_side.max(f32::MIN_POSITIVE);
-                let crease = (refused - NEAR_CREASE.start) / (NEAR_CREASE.end - NEAR_CREASE.start);
-                let filtered = Vec3::new(mx, my, mz).normalize_or(n);
-                let mix = denoise.max(crease.clamp(0.0, 1.0));
-                Filtered {
-                    normal: n.lerp(filtered, mix).normalize_or(n),
-                    ..Filtered::default()
-                }
+        let [x, y, z, total, any_side] = sums.map(|sum| sum.0);
+        std::array::from_fn(|l| {
+            let n = Vec3::from_array(self.normal.map(|n| n.0[l]));
+            // Without noise the plane's normal is the better one, but for the neighbours of a crease.
+            let refused = 1.0 - total[l] / any_side[l].max(f32::MIN_POSITIVE);
+            let crease = (refused - NEAR_CREASE.start) / (NEAR_CREASE.end - NEAR_CREASE.start);
+            let filtered = Vec3::new(x[l], y[l], z[l]).normalize_or(n);
+            let mix = denoise.max(crease.clamp(0.0, 1.0));
+            Filtered {
+                normal: n.lerp(filtered, mix).normalize_or(n),
+                ..Filtered::default()
             }
-            Step::Offsets => Filtered {
-                normal: n,
-                offset: if total > 0.0 {
-                    denoise * offset / total
-                } else {
-                    0.0
-                },
-                // Normals turn by κ1 dx and κ2 dy, whose squares have the mean ½ (κ1² + κ2²) d² around a point.
-                curvature: if way > 0.0 {
-                    (2.0 * turn / way).sqrt().min(1.0 / support)
-                } else {
-                    0.0
-                },
+        })
+    }
+
+    fn offsets(&self, denoise: f32) -> [Filtered; LANES] {
+        let mut sums = [Lanes::ZERO; 4];
+        for pair in self.pairs() {
+            let any_side = pair.near * pair.sheet;
+            let root = any_side * pair.side;
+            let w = root * root;
+            let terms = [
+                w,
+                w * pair.away,
+                any_side * pair.angle2,
+                any_side * pair.length2,
+            ];
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                *sum += term;
+            }
+        }
+        let [total, offset, turn, way] = sums.map(|sum| sum.0);
+        std::array::from_fn(|l| Filtered {
+            normal: Vec3::ZERO,
+            offset: if total[l] > 0.0 {
+                denoise * offset[l] / total[l]
+            } else {
+                0.0
             },
-        }
+            // Normals turn by κ1 dx and κ2 dy, whose squares have the mean ½ (κ1² + κ2²) d² around a point.
+            curvature: if way[l] > 0.0 {
+                (2.0 * turn[l] / way[l]).sqrt().min(1.0 / self.support)
+            } else {
+                0.0
+            },
+        })
     }
 }

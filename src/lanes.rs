@@ -22,6 +22,12 @@ impl Lanes {
         Lanes([x; LANES])
     }
 
+    /// `f` of every lane's number.
+    #[inline(always)]
+    pub fn from_fn(f: impl Fn(usize) -> f32) -> Lanes {
+        Lanes(std::array::from_fn(f))
+    }
+
     /// The first eight of a slice.
     #[inline(always)]
     pub fn load(x: &[f32]) -> Lanes {
@@ -51,6 +57,18 @@ impl Lanes {
     #[inline(always)]
     pub fn max(self, o: Lanes) -> Lanes {
         self.zip(o, |a, b| if a > b { a } else { b })
+    }
+
+    /// In each lane `x` where `self` is less than `o`, else `y`.
+    #[inline(always)]
+    pub fn less(self, o: Lanes, x: Lanes, y: Lanes) -> Lanes {
+        Lanes::from_fn(|l| if self.0[l] < o.0[l] { x.0[l] } else { y.0[l] })
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Lanes {
+        self.map(f32::sqrt)
     }
 
     /// The sum of the lanes, in order.
@@ -97,4 +115,20 @@ impl Div for Lanes {
     fn div(self, o: Lanes) -> Lanes {
         self.zip(o, |a, b| a / b)
     }
+}
+
+/// Clears `out` and appends to it the places `0..n` for which the lanes that `value` gives for a block of places, by its
+/// first one, are at most `limit`. Without branches, which no processor could predict here.
+#[inline(always)]
+pub fn places_within(n: usize, limit: f32, value: impl Fn(usize) -> Lanes, out: &mut Vec<u32>) {
+    out.clear();
+    out.resize(n.next_multiple_of(LANES), 0);
+    let mut found = 0;
+    for start in (0..n).step_by(LANES) {
+        for (l, x) in value(start).0.into_iter().enumerate() {
+            out[found] = (start + l) as u32;
+            found += usize::from(x <= limit && start + l < n);
+        }
+    }
+    out.truncate(found);
 }

@@ -44,7 +44,10 @@ pub mod kernel;
 // Stages, in the order in which data flows through them.
 pub mod cloud;
 pub mod octree;
+pub mod neighborhood;
 pub mod features;
+mod noise;
+mod planes;
 mod filter;
 pub mod density;
 pub mod fcm;
@@ -67,6 +70,7 @@ mod rims;
 pub mod attach;
 pub mod report;
 pub mod distance;
+pub mod height_field;
 
 // The top: the stages in order.
 pub mod pipeline;

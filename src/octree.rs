@@ -188,18 +188,40 @@ impl Octree {
             }
             return;
         }
-        let mut near = [(0.0, 0); 8];
-        let near = &mut near[..node.children as usize];
-        for (slot, child) in near.iter_mut().zip(node.child_ids()) {
-            *slot = (self.nodes[child].distance2(q), child);
-        }
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for &(d2, child) in near.iter() {
-            if out.len() == k && d2 >= out[k - 1].distance2 {
+        let bound = |out: &[Neighbor]| {
+            if out.len() == k {
+                out[k - 1].distance2
+            } else {
+                f32::INFINITY
+            }
+        };
+        for &(d2, child) in self.nearer(node, q, bound(out)).children() {
+            if d2 >= bound(out) {
                 break;
             }
             self.knn_below(child, q, k, out);
         }
+    }
+
+    /// The children of a node whose boxes are nearer to `q` than `bound` (squared), nearest first, equal ones by index.
+    fn nearer(&self, node: &Node, q: Vec3, bound: f32) -> Nearer {
+        let mut near = Nearer {
+            children: [(0.0, 0); 8],
+            len: 0,
+        };
+        for child in node.child_ids() {
+            let d2 = self.nodes[child].distance2(q);
+            if d2 < bound {
+                let mut at = near.len;
+                while at > 0 && near.children[at - 1].0 > d2 {
+                    near.children[at] = near.children[at - 1];
+                    at -= 1;
+                }
+                near.children[at] = (d2, child);
+                near.len += 1;
+            }
+        }
+        near
     }
 
     /// The nearest point.
@@ -226,13 +248,7 @@ impl Octree {
             }
             return;
         }
-        let mut near = [(0.0, 0); 8];
-        let near = &mut near[..node.children as usize];
-        for (slot, child) in near.iter_mut().zip(node.child_ids()) {
-            *slot = (self.nodes[child].distance2(q), child);
-        }
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for &(d2, child) in near.iter() {
+        for &(d2, child) in self.nearer(node, q, best.distance2).children() {
             if d2 >= best.distance2 {
                 break;
             }
@@ -257,6 +273,31 @@ impl Octree {
         );
     }
 
+    /// Calls `visit` with ranges of points, ascending, that together hold every point of a box (and some near it), until it
+    /// returns false; whether it never did.
+    pub fn visit_box(
+        &self,
+        lo: Vec3,
+        hi: Vec3,
+        mut visit: impl FnMut(Range<usize>) -> bool,
+    ) -> bool {
+        let mut stack = Vec::with_capacity(64);
+        stack.push(0);
+        while let Some(id) = stack.pop() {
+            let node = &self.nodes[id];
+            if node.lo.cmpgt(hi).any() || node.hi.cmplt(lo).any() {
+                continue;
+            }
+            let inside = node.lo.cmpge(lo).all() && node.hi.cmple(hi).all();
+            if !inside && !node.is_leaf() {
+                stack.extend(node.child_ids().rev());
+            } else if !visit(node.range()) {
+                return false;
+            }
+        }
+        true
+    }
+
     /// Calls `visit` with every point of every leaf that `enter` lets pass with all its ancestors, by index; `enter` gets
     /// a node and its place in [`Octree::nodes`].
     pub fn visit(&self, enter: impl Fn(usize, &Node) -> bool, mut visit: impl FnMut(usize)) {
@@ -274,6 +315,18 @@ impl Octree {
                 stack.extend(node.child_ids().rev());
             }
         }
+    }
+}
+
+/// Children that a query goes down to, with the squared distances to their boxes.
+struct Nearer {
+    children: [(f32, usize); 8],
+    len: usize,
+}
+
+impl Nearer {
+    fn children(&self) -> &[(f32, usize)] {
+        &self.children[..self.len]
     }
 }
 

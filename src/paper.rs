@@ -25,6 +25,7 @@ use crate::linalg::sym_eigen;
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::{Clusters, ReduceParams, Target};
+use crate::power::Fuzzifier;
 use crate::progress::{Progress, Stage};
 use crate::reduce::Clustering;
 
@@ -107,14 +108,14 @@ pub fn cluster(
         .sum();
 
     let index = Octree::build(&centers);
-    let m = params.fuzzifier.unwrap_or(2.0);
+    let fuzzifier = Fuzzifier::new(params.fuzzifier.unwrap_or(2.0));
     let shares = par::map(
         tree.points.len(),
         Vec::new,
         |k, found: &mut Vec<Neighbor>| {
             index.knn(tree.points[k], crate::clusters::SHARES, found);
             let near = found.iter().map(|n| index.order[n.index as usize]);
-            Shares::of(tree.points[k], &centers, near, m)
+            Shares::of(tree.points[k], &centers, near, fuzzifier)
         },
     );
     let shrink = (tree.points.len() as f32 / centers.len() as f32).sqrt();

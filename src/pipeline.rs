@@ -3,12 +3,13 @@
 use crate::attach::attach;
 use crate::cells::{self, Sites};
 use crate::cloud::{Attribute, Cloud};
-use crate::distance::{cloud_distance, mesh_distance};
+use crate::distance::mesh_distance;
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
 use crate::features::Features;
 use crate::field::Field;
 use crate::fit;
+use crate::height_field::cloud_distance;
 use crate::octree::Octree;
 use crate::orient;
 use crate::par;

@@ -16,6 +16,7 @@ use crate::linalg::sym_eigen;
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::Placement;
+use crate::power::Fuzzifier;
 
 /// τ of A_k: how much a distance along the surface counts against one across it.
 const TAU: f64 = 0.03;
@@ -89,7 +90,7 @@ pub fn place(
     features: &Features,
     centers: &[Vec3],
     members: &Members,
-    (placement, m): (Placement, f64),
+    (placement, fuzzifier): (Placement, Fuzzifier),
 ) -> Vec<Placed> {
     par::map(
         centers.len(),
@@ -97,7 +98,7 @@ pub fn place(
         |i, ()| {
             let mut sums = Sums::default();
             for &(k, u) in members.of(i) {
-                sums.add(points, features, k as usize, u, m);
+                sums.add(points, features, k as usize, u, fuzzifier);
             }
             sums.place(centers[i], placement)
         },
@@ -119,7 +120,14 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, points: &[Vec3], features: &Features, k: usize, u: f32, m: f64) {
+    fn add(
+        &mut self,
+        points: &[Vec3],
+        features: &Features,
+        k: usize,
+        u: f32,
+        fuzzifier: Fuzzifier,
+    ) {
         let u = f64::from(u);
         let n = features.normals[k].as_dvec3();
         let x = points[k].as_dvec3();
@@ -128,7 +136,7 @@ impl Sums {
         }
         let x = x - self.origin;
         let area = f64::from(features.spacing[k]).powi(2);
-        let w = libm::pow(u, m) * area.max(f64::MIN_POSITIVE);
+        let w = fuzzifier.raise(u) * area.max(f64::MIN_POSITIVE);
         self.weight += w;
         self.position += w * x;
         let products = crate::linalg::outer(n);

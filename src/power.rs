@@ -58,6 +58,28 @@ impl Fuzzifier {
     }
 }
 
+impl Fuzzifier {
+    /// `r^(1/(m-1))`.
+    pub fn share(self, ratio: f64) -> f64 {
+        match self {
+            Fuzzifier::Two(power) => power.share(ratio),
+            Fuzzifier::ThreeHalves(power) => power.share(ratio),
+            Fuzzifier::FiveQuarters(power) => power.share(ratio),
+            Fuzzifier::Any(power) => power.share(ratio),
+        }
+    }
+
+    /// `u^m`.
+    pub fn raise(self, u: f64) -> f64 {
+        match self {
+            Fuzzifier::Two(power) => power.raise(u),
+            Fuzzifier::ThreeHalves(power) => power.raise(u),
+            Fuzzifier::FiveQuarters(power) => power.raise(u),
+            Fuzzifier::Any(power) => power.raise(u),
+        }
+    }
+}
+
 macro_rules! powers {
     ($float:ty) => {
         impl Power<$float> for TwoPower {

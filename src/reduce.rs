@@ -14,6 +14,7 @@ use crate::paper;
 use crate::par;
 use crate::params::{Method, Placement, ReduceParams, Target};
 use crate::placement::{self, Members};
+use crate::power::Fuzzifier;
 use crate::progress::{Progress, Stage};
 
 /// A reduced cloud. Every array has one entry a reduced point.
@@ -80,7 +81,7 @@ pub fn reduce(
     progress: &mut dyn Progress,
 ) -> Result<Reduced> {
     params.validate()?;
-    let m = fuzzifier(params);
+    let power = Fuzzifier::new(fuzzifier(params));
     let denoised = features.denoised(tree);
     let goal = Goal::new(params, tree, features);
     let clustering = match &goal {
@@ -110,7 +111,7 @@ pub fn reduce(
         features,
         &clustering.centers,
         &members,
-        (placement, m),
+        (placement, power),
     );
     progress.update(Stage::Place, 0.5)?;
     let nearest = if placement == Placement::Sample {
@@ -127,7 +128,7 @@ pub fn reduce(
     for s in &clustering.shares {
         weights[s.center[0] as usize] += 1.0;
     }
-    let stats = stats(tree, &clustering, m);
+    let stats = stats(tree, &clustering, power);
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
         cloud: reduced,
@@ -232,13 +233,13 @@ fn adaptive(
     })
 }
 
-fn stats(tree: &Octree, clustering: &Clustering, m: f64) -> ReduceStats {
+fn stats(tree: &Octree, clustering: &Clustering, power: Fuzzifier) -> ReduceStats {
     let centers = &clustering.centers;
     let mut objective = 0.0;
     for (p, s) in tree.points.iter().zip(&clustering.shares) {
         for (&i, &u) in s.center.iter().zip(&s.u).filter(|&(_, &u)| u > 0.0) {
             objective +=
-                libm::pow(f64::from(u), m) * f64::from(p.distance_squared(centers[i as usize]));
+                power.raise(f64::from(u)) * f64::from(p.distance_squared(centers[i as usize]));
         }
     }
     let index = Octree::build(centers);

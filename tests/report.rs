@@ -1,7 +1,8 @@
 //! Topology and distances against known truth and naive computation.
 
 use glam::{DVec3, Vec3};
-use pointweave::distance::{TriangleTree, closest_on_triangle, cloud_distance, mesh_distance};
+use pointweave::distance::{TriangleTree, closest_on_triangle, mesh_distance};
+use pointweave::height_field::cloud_distance;
 use pointweave::octree::Octree;
 use pointweave::progress::Silent;
 use pointweave::report::{
