@@ -80,7 +80,7 @@ impl Features {
             20.0,
             (Stage::Features, &mut part),
             Planes::default,
-            |i, planes| planes.cell(tree, cells[i].clone(), scales.fit),
+            |i, planes| planes.cell(tree, cells[i].clone(), scales.plane),
         )?
         .concat();
         let mut features = Features {
