@@ -149,9 +149,9 @@ fn fit(sums: [Lanes; 10], radius: f32) -> impl Iterator<Item = Plane> {
         zz * inverse - z * z,
     ];
     let (variation, normal) = least_axis(covariance);
-    // The point itself weighs 1 and says nothing of the density.
+    // The point itself counts: reduced points keep apart, as a lattice does, and with it the sum is the lattice's.
     let disc = Lanes::splat(std::f32::consts::PI / 3.0 * radius * radius);
-    let spacing = (disc / (w - Lanes::splat(1.0)).max(Lanes::splat(f32::MIN_POSITIVE))).sqrt();
+    let spacing = (disc * inverse).sqrt();
     (0..LANES).map(move |l| Plane {
         spacing: spacing.0[l],
         normal: Vec3::new(normal[0].0[l], normal[1].0[l], normal[2].0[l]),
