@@ -59,6 +59,8 @@ const TARGETS = {
   flatness: number(0, 1, { open: '(' }),
 };
 
+const CARRY = choice('mean', 'majority', 'nearest');
+
 const REDUCE = {
   target: rule('an object with one of ratio, count, tolerance, flatness', acceptsTarget, { ratio: 1 / 3 }),
   method: choice('adaptive', 'paper'),
@@ -72,6 +74,8 @@ const REDUCE = {
   seed: integer(0, Number.MAX_SAFE_INTEGER, 0),
   cellPoints: integer(8, 65_536),
   maxDepth: integer(1, 21, 21),
+  attributes: rule(`an object of attribute names, each with ${CARRY.expected}`, acceptsAttributes, {}),
+  assignment: flag(false),
 };
 
 const RECONSTRUCT = {
@@ -176,6 +180,15 @@ function acceptsTarget(value, path) {
   if (!isObject(value)) return false;
   const given = checkTable(TARGETS, value, `${path}.`);
   return Object.keys(given).length === 1;
+}
+
+/** Whether the cloud has these attributes is found out in Rust. @type {Rule['accepts']} */
+function acceptsAttributes(value, path) {
+  if (!isObject(value)) return false;
+  for (const [name, how] of Object.entries(value)) {
+    if (!CARRY.accepts(how, '')) throw badOption(`${path}.${name}`, CARRY.expected, how);
+  }
+  return true;
 }
 
 /** @type {Rule['accepts']} */

@@ -54,6 +54,15 @@ export type Target =
   /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
   | { flatness: number };
 
+/** How the values of the input points become the value of the reduced point that stands for them. */
+export type Carry =
+  /** Their mean, weighted by membership: for measurements. */
+  | 'mean'
+  /** The value with the largest sum of memberships, of equals the smallest: for labels. A colour is one value. */
+  | 'majority'
+  /** That of the nearest input point. */
+  | 'nearest';
+
 export interface ReduceOptions {
   /** Default `{ ratio: 1/3 }`. */
   target?: Target;
@@ -85,6 +94,13 @@ export interface ReduceOptions {
   cellPoints?: number;
   /** Deepest level of the octree, 1 to 21. Default 21. */
   maxDepth?: number;
+  /**
+   * How the cloud's attributes are carried to the reduced points, by name; `colors` names the colours. Default `{}`:
+   * every one is `'mean'`.
+   */
+  attributes?: Record<string, Carry>;
+  /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
+  assignment?: boolean;
 }
 
 export interface ReconstructOptions {
@@ -159,6 +175,8 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   weights: Float32Array;
   /** Index of the nearest input point. */
   nearest: Uint32Array;
+  /** With `assignment`, one entry an input point: the index of the reduced point that it belongs to most. */
+  assignment?: Uint32Array;
   report: ReduceReport;
 }
 

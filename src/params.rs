@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How much a reduction keeps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -63,6 +64,21 @@ pub enum Placement {
     Sample,
 }
 
+/// The name that stands for a cloud's colours in [`ReduceParams::attributes`].
+pub const COLORS: &str = "colors";
+
+/// How a scalar, or the colours, of the input points go to the reduced point that stands for them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Carry {
+    /// The mean, weighted by membership: for measurements.
+    Mean,
+    /// The value with the largest sum of memberships, of equals the smallest: for labels. A colour is one value.
+    Majority,
+    /// The value of the nearest input point.
+    Nearest,
+}
+
 /// Options of [`crate::reduce`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -92,6 +108,11 @@ pub struct ReduceParams {
     pub cell_points: Option<usize>,
     /// Deepest octree level, 1-21. Default 21.
     pub max_depth: u32,
+    /// How scalars are carried to the reduced points, by name; `colors` names the colours. Those that are not named, by
+    /// default all, are [`Carry::Mean`].
+    pub attributes: BTreeMap<String, Carry>,
+    /// Say of every input point which reduced point it belongs to most. Default `false`.
+    pub assignment: bool,
 }
 
 impl Default for ReduceParams {
@@ -109,6 +130,8 @@ impl Default for ReduceParams {
             seed: 0,
             cell_points: None,
             max_depth: 21,
+            attributes: BTreeMap::new(),
+            assignment: false,
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::height_field::cloud_distance;
 use crate::octree::Octree;
 use crate::orient;
 use crate::par;
-use crate::params::{ReduceParams, Resolution, SurfaceParams, Target};
+use crate::params::{COLORS, ReduceParams, Resolution, SurfaceParams, Target};
 use crate::progress::{Progress, Stage};
 use crate::reduce::{self, Reduced};
 use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
@@ -112,6 +112,7 @@ pub fn reduce(
     progress: &mut dyn Progress,
 ) -> Result<ReducedCloud> {
     params.validate()?;
+    check_attributes(cloud, params)?;
     let mut clock = Clock::new(progress);
     let (tree, features) = measure(cloud, &mut clock)?;
     let reduced = reduce::reduce(cloud, &tree, &features, params, &mut clock)?;
@@ -258,7 +259,34 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
             found: "false and no normals".into(),
         });
     }
-    Ok(())
+    match &params.reduce {
+        Some(reduce) => check_attributes(cloud, reduce),
+        None => Ok(()),
+    }
+}
+
+/// Names of `attributes` that the cloud does not have.
+fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
+    let scalars = cloud.attributes.iter().map(|a| a.name.as_str());
+    let names: Vec<&str> = scalars
+        .chain(cloud.colors.as_ref().map(|_| COLORS))
+        .collect();
+    match params
+        .attributes
+        .keys()
+        .find(|key| !names.contains(&key.as_str()))
+    {
+        None => Ok(()),
+        Some(key) => Err(Error::BadOption {
+            option: "attributes".into(),
+            expected: if names.is_empty() {
+                "an empty object, as the cloud has no attributes".into()
+            } else {
+                format!("names of the cloud's attributes: {}", names.join(", "))
+            },
+            found: format!("an object with {key}"),
+        }),
+    }
 }
 
 /// The reduced cloud that surfaces are fitted to, and why it is not what was asked for, where it is not.
@@ -277,6 +305,7 @@ fn points_to_fit(
     }
     let all = ReduceParams {
         target: Target::Ratio(1.0),
+        assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
         ..Default::default()
     };
     let reason = match params.reduce {

@@ -5,6 +5,8 @@
 //! it, `v = (Σ u^m A_k)⁻¹ Σ u^m A_k x_k`, lands as far outside and exactly on creases and corners.
 //! Half-way between the two lies on the surface (to third order).
 
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::{DMat3, DVec3, Vec3};
@@ -15,7 +17,7 @@ use crate::features::Features;
 use crate::linalg::sym_eigen;
 use crate::octree::{Neighbor, Octree};
 use crate::par;
-use crate::params::Placement;
+use crate::params::{COLORS, Carry, Placement};
 use crate::power::Fuzzifier;
 
 /// τ of A_k: how much a distance along the surface counts against one across it.
@@ -246,8 +248,17 @@ pub fn snap(
     chosen
 }
 
-/// The reduced cloud's colours, scalars and normal signs: membership-weighted means of the input's.
-pub fn carry(cloud: &Cloud, tree: &Octree, members: &Members, placed: &[Placed]) -> Cloud {
+/// The reduced cloud's colours and scalars, carried as `attributes` says, and its normal signs, by the mean of the
+/// input's. `nearest` has the nearest input point of every placed one, in the octree's order.
+pub fn carry(
+    cloud: &Cloud,
+    tree: &Octree,
+    members: &Members,
+    placed: &[Placed],
+    nearest: &[u32],
+    attributes: &BTreeMap<String, Carry>,
+) -> Cloud {
+    let how = |name: &str| attributes.get(name).copied().unwrap_or(Carry::Mean);
     let input = |k: u32| tree.order[k as usize] as usize;
     let mean = |i: usize, value: &dyn Fn(usize) -> f64| -> f64 {
         let (mut sum, mut total) = (0.0, 0.0);
@@ -258,16 +269,28 @@ pub fn carry(cloud: &Cloud, tree: &Octree, members: &Members, placed: &[Placed])
         if total > 0.0 { sum / total } else { 0.0 }
     };
     let each = 0..placed.len();
+    let votes = |i: usize| members.of(i).iter().map(|&(k, u)| (input(k), u));
+    let closest = |i: usize| input(nearest[i]);
     let colors = cloud.colors.as_ref().map(|colors| {
-        let of = |i| [0, 1, 2].map(|c| mean(i, &|k| f64::from(colors[k][c])).round() as u8);
+        let of = |i: usize| match how(COLORS) {
+            Carry::Mean => [0, 1, 2].map(|c| mean(i, &|k| f64::from(colors[k][c])).round() as u8),
+            Carry::Majority => majority(votes(i).map(|(k, u)| (colors[k], u)), Ord::cmp)
+                .unwrap_or(colors[closest(i)]),
+            Carry::Nearest => colors[closest(i)],
+        };
         each.clone().map(of).collect()
     });
-    let attributes = cloud.attributes.iter().map(|a| Attribute {
-        name: a.name.clone(),
-        values: each
-            .clone()
-            .map(|i| mean(i, &|k| f64::from(a.values[k])) as f32)
-            .collect(),
+    let attributes = cloud.attributes.iter().map(|a| {
+        let of = |i: usize| match how(&a.name) {
+            Carry::Mean => mean(i, &|k| f64::from(a.values[k])) as f32,
+            Carry::Majority => majority(votes(i).map(|(k, u)| (a.values[k], u)), f32::total_cmp)
+                .unwrap_or(a.values[closest(i)]),
+            Carry::Nearest => a.values[closest(i)],
+        };
+        Attribute {
+            name: a.name.clone(),
+            values: each.clone().map(of).collect(),
+        }
     });
     let signed = |i: usize| {
         let n = placed[i].normal;
@@ -286,4 +309,21 @@ pub fn carry(cloud: &Cloud, tree: &Octree, members: &Members, placed: &[Placed])
         attributes: attributes.collect(),
         origin: cloud.origin,
     }
+}
+
+/// The value with the most votes, of equals the smallest; `None` without votes.
+fn majority<T: Copy + PartialEq>(
+    votes: impl Iterator<Item = (T, f32)>,
+    order: fn(&T, &T) -> Ordering,
+) -> Option<T> {
+    let mut votes: Vec<(T, f32)> = votes.collect();
+    votes.sort_by(|a, b| order(&a.0, &b.0));
+    let mut most = None;
+    for same in votes.chunk_by(|a, b| a.0 == b.0) {
+        let sum: f64 = same.iter().map(|&(_, u)| f64::from(u)).sum();
+        if most.is_none_or(|(_, before)| sum > before) {
+            most = Some((same[0].0, sum));
+        }
+    }
+    most.map(|(value, _)| value)
 }

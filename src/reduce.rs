@@ -17,7 +17,7 @@ use crate::placement::{self, Members};
 use crate::power::Fuzzifier;
 use crate::progress::{Progress, Stage};
 
-/// A reduced cloud. Every array has one entry a reduced point.
+/// A reduced cloud. Every array but `assignment` has one entry a reduced point.
 #[derive(Debug, Clone)]
 pub struct Reduced {
     /// Positions, unit normals (signs of the input's normals where it had them, else arbitrary), colours and scalars, in
@@ -31,6 +31,8 @@ pub struct Reduced {
     pub weights: Vec<f32>,
     /// Index of the nearest input point.
     pub nearest: Vec<u32>,
+    /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order.
+    pub assignment: Option<Vec<u32>>,
     /// What the clustering did.
     pub stats: ReduceStats,
 }
@@ -123,11 +125,18 @@ pub fn reduce(
             |i, ()| tree.nearest(placed[i].position).index,
         )
     };
-    let reduced = placement::carry(cloud, tree, &members, &placed);
+    let reduced = placement::carry(cloud, tree, &members, &placed, &nearest, &params.attributes);
     let mut weights = vec![0.0; placed.len()];
     for s in &clustering.shares {
         weights[s.center[0] as usize] += 1.0;
     }
+    let assignment = params.assignment.then(|| {
+        let mut assignment = vec![0; cloud.len()];
+        for (s, &i) in clustering.shares.iter().zip(&tree.order) {
+            assignment[i as usize] = s.center[0];
+        }
+        assignment
+    });
     let stats = stats(tree, &clustering, power);
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
@@ -136,6 +145,7 @@ pub fn reduce(
         variation: placed.iter().map(|p| p.variation).collect(),
         weights,
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
+        assignment,
         stats,
     })
 }

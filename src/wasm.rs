@@ -249,6 +249,10 @@ fn reduced_to_js(result: &ReducedCloud, input: &RawCloud) -> JsResult {
         ),
         ("weights", Float32Array::from(&reduced.weights[..]).into()),
         ("nearest", Uint32Array::from(&reduced.nearest[..]).into()),
+        (
+            "assignment",
+            optional(&reduced.assignment, |a| Uint32Array::from(&a[..])),
+        ),
         ("report", to_js(&result.report)?),
     ])?;
     attach(fields, &cloud.attributes, cloud.origin)

@@ -7,11 +7,11 @@ use glam::{DVec3, Vec3};
 use pointweave::density::quotas;
 use pointweave::features::Features;
 use pointweave::octree::Octree;
-use pointweave::params::{Clusters, Method, Norm, Placement, Target};
+use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Placement, Target};
 use pointweave::progress::Silent;
 use pointweave::reduce::{Reduced, reduce};
 use pointweave::rng::Rng;
-use pointweave::{Cloud, Error, ReduceParams, Stage};
+use pointweave::{Cloud, Error, ReduceParams, Stage, SurfaceParams, pipeline};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
@@ -47,6 +47,12 @@ fn assert_sound(cloud: &Cloud, r: &Reduced) {
         cloud.len() as f64,
         "weights add up to the input's count"
     );
+    if let Some(assignment) = &r.assignment {
+        assert_eq!(assignment.len(), cloud.len());
+        let mut members = vec![0.0; n];
+        assignment.iter().for_each(|&i| members[i as usize] += 1.0);
+        assert_eq!(members, r.weights);
+    }
     for (p, &i) in r
         .cloud
         .points
@@ -334,6 +340,147 @@ fn what_the_caller_attached_is_carried_along() {
     // The given normals point inwards, so the reduced ones do.
     let inwards = r.cloud.points.iter().zip(r.cloud.normals.as_ref().unwrap());
     inwards.for_each(|(p, n)| assert!(p.dot(*n) < 0.0));
+}
+
+fn carried<const N: usize>(attributes: [(&str, Carry); N], params: ReduceParams) -> ReduceParams {
+    ReduceParams {
+        attributes: attributes.map(|(name, how)| (name.into(), how)).into(),
+        ..params
+    }
+}
+
+#[test]
+fn labels_stay_labels() {
+    let cloud = shape(Shape::Torus, 6000, 1e-3);
+    let class = |p: &Vec3| if p.x > 0.0 { 2.0 } else { 9.0 };
+    let labels: Vec<f32> = cloud.points.iter().map(class).collect();
+    let color = |p: &Vec3| if p.y > 0.0 { [200, 0, 3] } else { [0, 90, 7] };
+    let colors: Vec<u8> = cloud.points.iter().flat_map(color).collect();
+    let cloud = ["mean", "majority", "nearest"]
+        .iter()
+        .try_fold(cloud, |cloud, name| cloud.with_attribute(name, &labels))
+        .and_then(|cloud| cloud.with_colors(&colors))
+        .unwrap();
+    for method in [Method::Adaptive, Method::Paper] {
+        for how in [Carry::Mean, Carry::Majority, Carry::Nearest] {
+            let params = ReduceParams {
+                method,
+                ..count(700)
+            };
+            let named = [
+                ("majority", Carry::Majority),
+                ("nearest", Carry::Nearest),
+                (COLORS, how),
+            ];
+            let r = run(&cloud, &carried(named, params));
+            let [mean, majority, nearest] = [0, 1, 2].map(|a| &r.cloud.attributes[a].values);
+            let mixed = mean.iter().filter(|v| ![2.0, 9.0].contains(v)).count();
+            assert!((10..200).contains(&mixed), "{mixed} means at the border");
+            let larger = |(m, l): (&f32, &f32)| *l == if *m < 5.5 { 2.0 } else { 9.0 };
+            assert!(mean.iter().zip(majority).all(larger));
+            let own = |(l, &i): (&f32, &u32)| *l == labels[i as usize];
+            assert!(nearest.iter().zip(&r.nearest).all(own));
+            let colors = r.cloud.colors.as_ref().unwrap();
+            let pure = colors.iter().all(|c| [[200, 0, 3], [0, 90, 7]].contains(c));
+            assert_eq!(pure, how != Carry::Mean, "{how:?}");
+            if how == Carry::Nearest {
+                let all = cloud.colors.as_ref().unwrap();
+                let own = |(c, &i): (&[u8; 3], &u32)| *c == all[i as usize];
+                assert!(colors.iter().zip(&r.nearest).all(own));
+            }
+        }
+    }
+}
+
+#[test]
+fn of_equally_frequent_labels_the_smallest_is_taken() {
+    let one_of = |labels: &[f32], colors: &[u8]| {
+        let line: Vec<Vec3> = (0..labels.len())
+            .map(|i| Vec3::new(i as f32, 0.0, 0.0))
+            .collect();
+        let cloud = cloud_of(&line).with_attribute("label", labels).unwrap();
+        let cloud = cloud.with_colors(colors).unwrap();
+        let both = [("label", Carry::Majority), (COLORS, Carry::Majority)];
+        let r = run(&cloud, &carried(both, count(1))).cloud;
+        (r.attributes[0].values[0], r.colors.unwrap()[0])
+    };
+    let black_or_blue = [0, 0, 255, 0, 0, 0];
+    assert_eq!(one_of(&[5.0, 2.0], &black_or_blue), (2.0, [0, 0, 0]));
+    assert_eq!(one_of(&[-1.0, -3.0], &black_or_blue), (-3.0, [0, 0, 0]));
+    let mostly_green = [9, 9, 9, 0, 200, 0, 1, 1, 1, 0, 200, 0];
+    assert_eq!(
+        one_of(&[7.0, 1.0, 7.0, 4.0], &mostly_green),
+        (7.0, [0, 200, 0])
+    );
+}
+
+#[test]
+fn a_name_that_the_cloud_does_not_have_is_refused() {
+    let bare = shape(Shape::Sphere, 100, 0.0);
+    let height = vec![0.0; 100];
+    let cloud = bare.clone().with_attribute("height", &height).unwrap();
+    let colored = cloud.clone().with_colors(&[0; 300]).unwrap();
+    for (cloud, name, expected) in [
+        (&bare, "height", "an empty object"),
+        (&cloud, "heigth", "height"),
+        (&cloud, COLORS, "height"),
+        (&colored, "", "height, colors"),
+    ] {
+        let params = carried([(name, Carry::Nearest)], ReduceParams::default());
+        let surface = SurfaceParams {
+            reduce: Some(params.clone()),
+            ..Default::default()
+        };
+        for error in [
+            pipeline::reduce(cloud, &params, &mut Silent).unwrap_err(),
+            pipeline::reconstruct(cloud, &surface, &mut Silent).unwrap_err(),
+        ] {
+            assert_eq!(error.code(), "bad-option");
+            let found = error.found().unwrap();
+            assert!(found.ends_with(name), "{found}");
+            let said = error.expected().unwrap();
+            assert!(said.contains(expected), "{said}");
+            assert!(error.to_string().contains("option attributes"), "{error}");
+        }
+    }
+    let params = carried([(COLORS, Carry::Nearest)], ReduceParams::default());
+    assert!(pipeline::reduce(&colored, &params, &mut Silent).is_ok());
+}
+
+#[test]
+fn every_input_point_knows_its_reduced_point() {
+    let cloud = shape(Shape::Box, 3000, 1e-3);
+    for method in [Method::Adaptive, Method::Paper] {
+        for target in [
+            Target::Count(1),
+            Target::Count(500),
+            Target::Ratio(1.0),
+            Target::Flatness(3e-4),
+        ] {
+            for placement in [Placement::Center, Placement::Sample] {
+                let params = ReduceParams {
+                    method,
+                    target,
+                    placement,
+                    ..Default::default()
+                };
+                assert_eq!(run(&cloud, &params).assignment, None);
+                let asked = ReduceParams {
+                    assignment: true,
+                    ..params
+                };
+                let r = run(&cloud, &asked);
+                let assignment = r.assignment.unwrap();
+                let farther = cloud.points.iter().zip(&assignment).filter(|(p, i)| {
+                    let own = p.distance(r.cloud.points[**i as usize]);
+                    let next = r.cloud.points.iter().map(|q| p.distance(*q));
+                    own > 1.5 * next.fold(f32::INFINITY, f32::min) + 0.01
+                });
+                // In the input's order: a wrong one would name points anywhere.
+                assert!(farther.count() < 30, "{method:?}, {target:?}");
+            }
+        }
+    }
 }
 
 #[test]

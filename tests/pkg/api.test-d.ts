@@ -20,6 +20,8 @@ export function conform(web: typeof browser, server: typeof node): [Functions, F
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });
   const exact: ReducedCloud<Float64Array> = await reduce({ positions: precise }, { target: { count: 10 }, method: 'paper' });
+  const labelled = await reduce(exact, { attributes: { label: 'majority', colors: 'nearest' }, assignment: true });
+  const members: Uint32Array | undefined = labelled.assignment;
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
@@ -33,6 +35,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   await reduce(cloud, { target: '0.3' });
   // @ts-expect-error no such option
   await reduce(cloud, { ratio: 0.3 });
+  // @ts-expect-error no such way to carry an attribute
+  await reduce(cloud, { attributes: { label: 'median' } });
   // @ts-expect-error a plain array holds no positions
   await reduce({ positions: [1, 2, 3] });
   // @ts-expect-error the defaults cannot be changed
@@ -42,5 +46,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share];
+  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members];
 }

@@ -96,6 +96,37 @@ test('results have the type of the input, and everything that an input carries',
   }
 });
 
+test('labels and colours are carried as they are told to', async () => {
+  const cloud = sphere(3000);
+  const label = cloud.attributes.height.map((z) => (z > 0 ? 2 : 9));
+  cloud.attributes = { mixed: label, label, picked: label };
+  const reduced = await reduce(cloud, { attributes: { label: 'majority', picked: 'nearest', colors: 'nearest' } });
+  const { mixed, label: voted, picked } = reduced.attributes;
+  assert.ok(mixed.some((value) => value !== 2 && value !== 9), 'means lie between the labels');
+  assert.ok(voted.every((value) => value === 2 || value === 9));
+  reduced.nearest.forEach((input, i) => {
+    assert.equal(picked[i], label[input]);
+    assert.deepEqual(reduced.colors.slice(3 * i, 3 * i + 3), cloud.colors.slice(3 * input, 3 * input + 3));
+  });
+});
+
+test('every input point is assigned to a reduced point', async () => {
+  const cloud = sphere(3000);
+  assert.equal((await reduce(cloud)).assignment, undefined);
+  const reduced = await reduce(cloud, { assignment: true });
+  const mesh = await reconstruct(cloud, { reduce: { assignment: true } });
+  for (const { assignment, weights, positions } of [reduced, mesh.cloud]) {
+    assert.ok(assignment instanceof Uint32Array && assignment.length === 3000);
+    const members = new Float32Array(weights.length);
+    assignment.forEach((reducedPoint, i) => {
+      members[reducedPoint]++;
+      const apart = [0, 1, 2].map((axis) => positions[3 * reducedPoint + axis] - cloud.positions[3 * i + axis]);
+      assert.ok(Math.hypot(...apart) < 0.2, `input point ${i}`);
+    });
+    assert.deepEqual(members, weights);
+  }
+});
+
 test('georeferenced clouds keep their precision', async () => {
   const center = [4_512_345.678, 543_210.123, 87.5];
   const here = await reduce(sphere(2000, { type: Float64Array }));

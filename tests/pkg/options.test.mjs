@@ -42,6 +42,8 @@ test('every wrong value is named, with what was expected', async () => {
     { method: 'best' }, { fuzzifier: 1 }, { fuzzifier: NaN }, { epsilon: 0 }, { maxIterations: 0 }, { maxIterations: 2.5 },
     { norm: 'manhattan' }, { clusters: 3 }, { curvatureWeight: -0.1 }, { placement: 'on' }, { seed: -1 }, { seed: 0.5 },
     { cellPoints: 7 }, { maxDepth: 22 },
+    { attributes: 'majority' }, { attributes: null }, { attributes: ['height'] }, { attributes: { height: 'median' } },
+    { attributes: { height: undefined } }, { attributes: { depth: 'mean' } }, { assignment: 1 }, { assignment: null },
     { signal: 'stop' }, { onProgress: true }, { transfer: 1 },
   ];
   for (const options of wrong) {
@@ -67,6 +69,21 @@ test('every wrong value is named, with what was expected', async () => {
   for (const options of [{ threads: 0 }, { threads: 'many' }, { worker: 1 }, { wasmUrl: 5 }, { wasmUrl: { double: 'x' } }, { workers: true }]) {
     await badOption(createEngine(options));
   }
+});
+
+test('an attribute that the cloud does not have is named, with those that it has', async () => {
+  for (const call of [
+    reduce(cloud, { attributes: { heigth: 'majority' } }),
+    reconstruct(cloud, { reduce: { attributes: { heigth: 'majority' } } }),
+  ]) {
+    const error = await badOption(call);
+    assert.match(error.message, /option attributes is an object with heigth: expected .*height, colors$/);
+    assert.equal(error.found, 'an object with heigth');
+  }
+  const bare = await badOption(reduce({ positions: cloud.positions }, { attributes: { colors: 'nearest' } }));
+  assert.match(bare.message, /colors: expected an empty object/);
+  const nested = await badOption(reconstruct(cloud, { reduce: { attributes: { height: 'sum' } } }));
+  assert.match(nested.message, /option reduce\.attributes\.height is 'sum': expected one of 'mean', 'majority', 'nearest'/);
 });
 
 test('undefined means not given', async () => {
@@ -122,6 +139,9 @@ test('Rust has the same ranges', async () => {
       ['cellPoints', [[7, false], [8, true], [65_536, true], [65_537, false]]],
       ['maxDepth', [[0, false], [1, true], [21, true], [22, false]]],
       ['seed', [[0, true], [2 ** 53 - 1, true], [-1, false]]],
+      ['attributes', [[{}, true], [{ height: 'mean', colors: 'majority' }, true], [{ height: 'nearest' }, true],
+        [{ height: 'other' }, false], [{ depth: 'mean' }, false], ['mean', false]]],
+      ['assignment', [[true, true], [false, true], [1, false]]],
       ...[['method', ['adaptive', 'paper']], ['norm', ['euclidean', 'diagonal', 'mahalanobis']],
         ['clusters', ['proportional', 'validity']], ['placement', ['implicit', 'mesh', 'center', 'sample']]]
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
