@@ -35,9 +35,9 @@ const WORDS = /** @type {Record<string, Words>} */ ({
     advice: 'Convert the file to PLY in the program that made it.',
   },
   'bad-file': {
-    title: 'This file is damaged or cut short',
-    text: 'It breaks the rules of its own format at the place below, so nothing of it was used.',
-    advice: 'Copy or export it again. If it was downloaded, check that all of it arrived.',
+    title: 'This file breaks the rules of its format',
+    text: 'Something else was found at the place below than belongs there, so nothing of the file was used.',
+    advice: 'Mend that place if the file is text, or export it again. If it was downloaded, check that all of it arrived.',
   },
   'unsupported-file': {
     title: 'This kind of file is not supported yet',
