@@ -47,7 +47,7 @@ impl Scales {
         let ramp = (relative - NOISE_FLOOR.start) / (NOISE_FLOOR.end - NOISE_FLOOR.start);
         Scales {
             fit: (16.0 + 8.0 * relative + 12.0 * relative * relative).min(128.0) as usize,
-            plane: (16.0 + 24.0 * relative + 30.0 * relative * relative).min(160.0) as usize,
+            plane: (16.0 + 24.0 * relative + 66.0 * relative * relative).min(224.0) as usize,
             filter: (12.0 + 80.0 * relative).min(256.0),
             noise,
             denoise: ramp.clamp(0.0, 1.0),

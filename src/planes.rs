@@ -12,9 +12,10 @@ use crate::linalg::least_axis;
 use crate::neighborhood::{Block, Neighborhood, bounds};
 use crate::octree::{Neighbor, Octree};
 
-/// R, in distances to the k-th neighbour of a block's middle point: the weights then amount to those of k equal ones. On
-/// clean clouds of four models that the bench does not use 1.3 and 1.5 give the same surfaces; noisy boxes are best at 1.4.
-const SUPPORT: f32 = 1.4;
+/// R, in distances to the k-th neighbour of a block's middle point: the weights then amount to those of 0.8 k equal ones. On
+/// clean clouds of four models that the bench does not use 1.15 to 1.5 give the same surfaces; thin parts of the samples want
+/// it small.
+const SUPPORT: f32 = 1.2;
 /// A point whose neighbours weigh less than this is in a sparser part than its block, and asks for itself. Even density gives
 /// a third of the `SUPPORT²·k` neighbours.
 const FEW: f32 = 2.5;
