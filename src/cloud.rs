@@ -174,6 +174,35 @@ impl Cloud {
         self
     }
 
+    /// These points alone, in the unit frame of their own bounding box. Positions are rounded once more: by at most 2⁻²⁴ of
+    /// this cloud's diagonal.
+    ///
+    /// # Errors
+    /// [`Error::EmptyCloud`] without indices.
+    pub fn select(&self, indices: &[u32]) -> Result<Cloud> {
+        let each = || indices.iter().map(|&i| i as usize);
+        let positions: Vec<f64> = each()
+            .flat_map(|i| self.frame.to_caller(self.points[i]))
+            .collect();
+        Ok(Cloud {
+            colors: self.colors.as_ref().map(|c| each().map(|i| c[i]).collect()),
+            normals: self
+                .normals
+                .as_ref()
+                .map(|n| each().map(|i| n[i]).collect()),
+            attributes: self
+                .attributes
+                .iter()
+                .map(|a| Attribute {
+                    name: a.name.clone(),
+                    values: each().map(|i| a.values[i]).collect(),
+                })
+                .collect(),
+            origin: self.origin,
+            ..Cloud::from_f64(&positions)?
+        })
+    }
+
     /// `x y z …` in the caller's frame.
     pub fn positions_f64(&self) -> Vec<f64> {
         self.points

@@ -126,7 +126,7 @@ impl Features {
 }
 
 /// Runs of equal points. In Morton order copies follow each other, unless another point shares their cell of 2⁻²¹.
-fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
+pub(crate) fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::with_capacity(points.len());
     for (i, p) in points.iter().enumerate() {
         match runs.last_mut() {
@@ -138,10 +138,10 @@ fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
 }
 
 /// A part of a stage's progress.
-struct Part<'a> {
-    progress: &'a mut dyn Progress,
-    from: f32,
-    to: f32,
+pub(crate) struct Part<'a> {
+    pub(crate) progress: &'a mut dyn Progress,
+    pub(crate) from: f32,
+    pub(crate) to: f32,
 }
 
 impl Progress for Part<'_> {

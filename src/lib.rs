@@ -8,6 +8,7 @@
 //!   └ cloud     length and finiteness checked, unit frame
 //!     └ octree    Morton order, neighbour queries
 //!       └ features  spacing, unoriented normal, curvature, surface variation, noise
+//!         ├ outliers    isolated points, which may be dropped before all else
 //!         └ fcm, reduce   section 3: fuzzy c-means centres stand for the points   ──► reduced cloud
 //!           └ cells, fit    section 4.1: one local implicit function a sub-domain (eq. 9-11)
 //!             └ orient        section 4.2: which side is out (Algorithm 1)
@@ -49,6 +50,7 @@ pub mod features;
 mod noise;
 mod planes;
 mod filter;
+pub mod outliers;
 pub mod density;
 pub mod fcm;
 pub mod clusters;

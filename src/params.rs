@@ -64,6 +64,16 @@ pub enum Placement {
     Sample,
 }
 
+/// What becomes of isolated input points ([`crate::outliers`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Outliers {
+    /// They are points like all others.
+    Keep,
+    /// They are left out, unless they are more than half of all.
+    Drop,
+}
+
 /// The name that stands for a cloud's colours in [`ReduceParams::attributes`].
 pub const COLORS: &str = "colors";
 
@@ -113,6 +123,9 @@ pub struct ReduceParams {
     pub attributes: BTreeMap<String, Carry>,
     /// Say of every input point which reduced point it belongs to most. Default `false`.
     pub assignment: bool,
+    /// Points far from all others and small clumps of them. Where some are dropped, the diagonal that lengths are fractions
+    /// of is that of the others. Default: keep.
+    pub outliers: Outliers,
 }
 
 impl Default for ReduceParams {
@@ -132,6 +145,7 @@ impl Default for ReduceParams {
             max_depth: 21,
             attributes: BTreeMap::new(),
             assignment: false,
+            outliers: Outliers::Keep,
         }
     }
 }

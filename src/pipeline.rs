@@ -6,19 +6,22 @@ use crate::cloud::{Attribute, Cloud};
 use crate::distance::mesh_distance;
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
-use crate::features::Features;
+use crate::features::{Features, Part};
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::cloud_distance;
 use crate::octree::Octree;
 use crate::orient;
+use crate::outliers;
 use crate::par;
-use crate::params::{COLORS, ReduceParams, Resolution, SurfaceParams, Target};
+use crate::params::{COLORS, Outliers, ReduceParams, Resolution, SurfaceParams, Target};
 use crate::progress::{Progress, Stage};
 use crate::reduce::{self, Reduced};
 use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
 use glam::Vec3;
 use serde::Serialize;
+use std::borrow::Cow;
+use std::ops::Range;
 use web_time::Instant;
 
 /// A reduced cloud and what its reduction did.
@@ -114,12 +117,14 @@ pub fn reduce(
     params.validate()?;
     check_attributes(cloud, params)?;
     let mut clock = Clock::new(progress);
-    let (tree, features) = measure(cloud, &mut clock)?;
-    let reduced = reduce::reduce(cloud, &tree, &features, params, &mut clock)?;
+    let input = Input::new(cloud, params.outliers, &mut clock)?;
+    let Input { tree, features, .. } = &input;
+    let mut reduced = reduce::reduce(&input.cloud, tree, features, params, &mut clock)?;
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let sites = Octree::build(&reduced.cloud.points);
     let distance = cloud_distance(&tree.points, &sites, normals, &mut clock)?;
-    let report = reduce_report(cloud, &features, &reduced, distance, &clock);
+    let report = reduce_report(&input, &reduced, distance, &clock);
+    input.restore(&mut reduced);
     Ok(ReducedCloud { reduced, report })
 }
 
@@ -136,22 +141,20 @@ pub fn reconstruct(
     params.validate()?;
     check_surface(cloud, params)?;
     let mut clock = Clock::new(progress);
-    let (tree, features) = measure(cloud, &mut clock)?;
+    let outliers = params
+        .reduce
+        .as_ref()
+        .map_or(Outliers::Keep, |r| r.outliers);
+    let input = Input::new(cloud, outliers, &mut clock)?;
+    let Input { tree, features, .. } = &input;
     if features.normals.iter().all(|&n| n == Vec3::ZERO) {
         let found = "all points lie on one line or at one place".into();
         return Err(Error::Degenerate { found });
     }
-    let (mut reduced, reason) = points_to_fit(cloud, &tree, &features, params, &mut clock)?;
+    let (mut reduced, reason) = points_to_fit(&input, params, &mut clock)?;
     let sites = sites(&reduced, features.noise, params.orient, &mut clock)?;
     let subdomains = cells::divide(&sites, &mut clock)?;
-    let fits = fit::fit(
-        subdomains,
-        &sites,
-        &tree,
-        features.noise,
-        params,
-        &mut clock,
-    )?;
+    let fits = fit::fit(subdomains, &sites, tree, features.noise, params, &mut clock)?;
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
@@ -165,8 +168,13 @@ pub fn reconstruct(
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
     let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
-    let mut report = reduce_report(cloud, &features, &reduced, distance, &clock);
-    report.reason = reason;
+    let mut report = reduce_report(&input, &reduced, distance, &clock);
+    report.reason = [input.reason.as_str(), &reason]
+        .into_iter()
+        .filter(|r| !r.is_empty())
+        .collect::<Vec<_>>()
+        .join("; ");
+    input.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
     let surface_report = SurfaceReport {
@@ -178,7 +186,7 @@ pub fn reconstruct(
         genus: topology.genus,
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
-        beyond_accuracy: beyond as f64 / cloud.len() as f64,
+        beyond_accuracy: beyond as f64 / input.cloud.len() as f64,
         orientation_energy: signs.energy,
     };
     let cloud = ReducedCloud { reduced, report };
@@ -245,6 +253,89 @@ fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Featur
     Ok((tree, features))
 }
 
+/// What a reduction is made of: the caller's points, or those that are not isolated.
+struct Input<'a> {
+    cloud: Cow<'a, Cloud>,
+    tree: Octree,
+    features: Features,
+    /// Points that the caller gave.
+    given: usize,
+    /// The caller's index of each point of `cloud`, where some were dropped.
+    kept: Option<Vec<u32>>,
+    /// Why nothing was dropped although much is isolated; else empty.
+    reason: String,
+}
+
+impl<'a> Input<'a> {
+    fn new(cloud: &'a Cloud, outliers: Outliers, progress: &mut dyn Progress) -> Result<Input<'a>> {
+        let whole = |(tree, features), reason| Input {
+            cloud: Cow::Borrowed(cloud),
+            tree,
+            features,
+            given: cloud.len(),
+            kept: None,
+            reason,
+        };
+        if outliers == Outliers::Keep {
+            return Ok(whole(measure(cloud, progress)?, String::new()));
+        }
+        // Two measurements with the search between them.
+        let (tree, features) = measure(cloud, &mut part(progress, 0.0..0.4))?;
+        let isolated = outliers::isolated(&tree, features.noise, &mut part(progress, 0.4..0.6))?;
+        let dropped = isolated.iter().filter(|&&is| is).count();
+        if dropped == 0 {
+            return Ok(whole((tree, features), String::new()));
+        }
+        if 2 * dropped > cloud.len() {
+            let reason =
+                format!("{dropped} points, more than half, are isolated: none was dropped");
+            return Ok(whole((tree, features), reason));
+        }
+        let mut kept: Vec<u32> = tree
+            .order
+            .iter()
+            .zip(isolated)
+            .filter(|&(_, is)| !is)
+            .map(|(&i, _)| i)
+            .collect();
+        kept.sort_unstable();
+        let rest = cloud.select(&kept)?;
+        let (tree, features) = measure(&rest, &mut part(progress, 0.6..1.0))?;
+        Ok(Input {
+            cloud: Cow::Owned(rest),
+            tree,
+            features,
+            given: cloud.len(),
+            kept: Some(kept),
+            reason: String::new(),
+        })
+    }
+
+    /// Indices of this cloud's points become the caller's.
+    fn restore(&self, reduced: &mut Reduced) {
+        let Some(kept) = &self.kept else { return };
+        for i in &mut reduced.nearest {
+            *i = kept[*i as usize];
+        }
+        if let Some(assignment) = &mut reduced.assignment {
+            let mut all = vec![outliers::DROPPED; self.given];
+            for (&i, &reduced) in kept.iter().zip(assignment.iter()) {
+                all[i as usize] = reduced;
+            }
+            *assignment = all;
+        }
+    }
+}
+
+/// A part of a stage's progress.
+fn part(progress: &mut dyn Progress, range: Range<f32>) -> Part<'_> {
+    Part {
+        progress,
+        from: range.start,
+        to: range.end,
+    }
+}
+
 fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
     if cloud.len() < MIN_POINTS {
         return Err(Error::TooFewPoints {
@@ -291,12 +382,16 @@ fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
 
 /// The reduced cloud that surfaces are fitted to, and why it is not what was asked for, where it is not.
 fn points_to_fit(
-    cloud: &Cloud,
-    tree: &Octree,
-    features: &Features,
+    input: &Input,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<(Reduced, String)> {
+    let Input {
+        cloud,
+        tree,
+        features,
+        ..
+    } = input;
     if let Some(params) = &params.reduce {
         let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
         if reduced.cloud.len() >= MIN_REDUCED.min(cloud.len()) {
@@ -363,21 +458,21 @@ fn in_input_order(tree: &Octree, values: &[Vec3]) -> Vec<Vec3> {
 }
 
 fn reduce_report(
-    cloud: &Cloud,
-    features: &Features,
+    input: &Input,
     reduced: &Reduced,
     distance: DistanceStats,
     clock: &Clock,
 ) -> ReduceReport {
     ReduceReport {
-        input_points: cloud.len(),
+        input_points: input.given,
+        outliers: input.given - input.cloud.len(),
         output_points: reduced.cloud.len(),
         cells: reduced.stats.cells,
         iterations: reduced.stats.iterations,
         objective: reduced.stats.objective,
         validity: reduced.stats.validity,
         evenness: reduced.stats.evenness,
-        noise: features.noise as f64,
+        noise: input.features.noise as f64,
         sharp_points: reduced.stats.kept,
         distance,
         ms: clock.times.clone(),
@@ -391,6 +486,7 @@ fn reduce_report(
         }
         .into(),
         threads: par::threads(),
+        reason: input.reason.clone(),
         ..Default::default()
     }
 }

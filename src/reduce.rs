@@ -27,11 +27,12 @@ pub struct Reduced {
     pub spacing: Vec<f32>,
     /// Surface variation λ0/(λ0+λ1+λ2) of the input around the point.
     pub variation: Vec<f32>,
-    /// Input points for which this is the nearest centre; adds up to the input's count.
+    /// Input points for which this is the nearest centre; adds up to the input's count, without those that were dropped.
     pub weights: Vec<f32>,
     /// Index of the nearest input point.
     pub nearest: Vec<u32>,
-    /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order.
+    /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order;
+    /// [`crate::outliers::DROPPED`] for one that was dropped.
     pub assignment: Option<Vec<u32>>,
     /// What the clustering did.
     pub stats: ReduceStats,

@@ -70,8 +70,10 @@ impl Serialize for StageTimes {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ReduceReport {
-    /// Points in.
+    /// Points in, those that were dropped too.
     pub input_points: usize,
+    /// Isolated points that were dropped; 0 where they are kept. All below is about the others.
+    pub outliers: usize,
     /// Points out.
     pub output_points: usize,
     /// Sub-domains that were clustered or kept.

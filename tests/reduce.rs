@@ -7,7 +7,8 @@ use glam::{DVec3, Vec3};
 use pointweave::density::quotas;
 use pointweave::features::Features;
 use pointweave::octree::Octree;
-use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Placement, Target};
+use pointweave::outliers::{self, DROPPED};
+use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Outliers, Placement, Target};
 use pointweave::progress::Silent;
 use pointweave::reduce::{Reduced, reduce};
 use pointweave::rng::Rng;
@@ -279,18 +280,23 @@ fn curved_parts_get_more_points_and_even_parts_stay_even() {
     assert!(strong as f64 > 1.2 * even as f64, "{even} {strong}");
 }
 
-#[test]
-fn uneven_scans_become_even() {
-    // A sphere with fifteen times the density on one side.
+/// A unit sphere with fifteen times the density on one side.
+fn uneven_sphere(n: usize, noise: f64) -> Vec<f64> {
     let mut rng = Rng::new(3);
     let mut positions = Vec::new();
-    while positions.len() < 60_000 {
+    while positions.len() < 3 * n {
         let p = DVec3::new(rng.normal(), rng.normal(), rng.normal()).normalize();
         if rng.uniform() < if p.x > 0.0 { 1.0 } else { 1.0 / 15.0 } {
-            positions.extend(p.to_array());
+            positions.extend((p * (1.0 + noise * rng.normal())).to_array());
         }
     }
-    let r = run(&Cloud::from_f64(&positions).unwrap(), &count(1500));
+    positions
+}
+
+#[test]
+fn uneven_scans_become_even() {
+    let cloud = Cloud::from_f64(&uneven_sphere(20_000, 0.0)).unwrap();
+    let r = run(&cloud, &count(1500));
     let sparse = points(&r.cloud.positions_f64())
         .filter(|p| p.x < 0.0)
         .count();
@@ -483,6 +489,192 @@ fn every_input_point_knows_its_reduced_point() {
     }
 }
 
+/// A fifth of the points, without those that are isolated.
+fn without_outliers() -> ReduceParams {
+    ReduceParams {
+        target: Target::Ratio(0.2),
+        assignment: true,
+        outliers: Outliers::Drop,
+        ..Default::default()
+    }
+}
+
+/// Points spread evenly over the shapes' box and half as far around it, and eight clumps of 1 to 8 points beyond.
+fn strays(n: usize) -> Vec<f64> {
+    let mut rng = Rng::new(8);
+    let mut positions: Vec<f64> = (0..3 * n).map(|_| 6.0 * rng.uniform() - 3.0).collect();
+    for size in 1..=8 {
+        let away = DVec3::new(rng.normal(), rng.normal(), rng.normal()).normalize() * 5.0;
+        for _ in 0..size {
+            let jitter = DVec3::new(rng.normal(), rng.normal(), rng.normal());
+            positions.extend((away + 0.02 * jitter).to_array());
+        }
+    }
+    positions
+}
+
+#[test]
+fn stray_points_and_clumps_are_dropped_and_nothing_else() {
+    let n = 20_000;
+    for s in Shape::ALL {
+        let diagonal = shape(s, n, 0.0).frame.diagonal;
+        for noise in [0.0, 1e-3] {
+            let mut positions = s.sample(n, noise * diagonal, 5);
+            positions.extend(strays(n / 20));
+            let cloud = Cloud::from_f64(&positions).unwrap();
+            let result = pipeline::reduce(&cloud, &without_outliers(), &mut Silent).unwrap();
+            let r = &result.reduced;
+            let assignment = r.assignment.as_ref().unwrap();
+            let dropped = |i: usize| assignment[i] == DROPPED;
+            assert_eq!((0..n).filter(|&i| dropped(i)).count(), 0, "{s:?} {noise}");
+            let spacing = (s.area() / n as f64).sqrt();
+            let far = |p: DVec3| s.distance(p).abs() > 5.0 * (spacing + noise * diagonal);
+            let (mut strays, mut left) = (0, 0);
+            for (i, p) in points(&positions).enumerate().skip(n).take(n / 20) {
+                strays += usize::from(far(p));
+                left += usize::from(far(p) && !dropped(i));
+            }
+            assert!(strays > n / 40 && left <= strays / 50, "{left} of {strays}");
+            assert!((n + n / 20..assignment.len()).all(dropped), "clumps");
+
+            let count = (0..assignment.len()).filter(|&i| dropped(i)).count();
+            let kept = assignment.len() - count;
+            assert_eq!(result.report.outliers, count);
+            assert_eq!(result.report.input_points, assignment.len());
+            assert_eq!(r.cloud.len(), (0.2 * kept as f64).round() as usize);
+            assert_eq!(r.weights.iter().sum::<f32>(), kept as f32);
+            // The frame is that of the points that are left, their indices the caller's.
+            assert!(r.cloud.frame.diagonal < 1.3 * diagonal.max(3.5));
+            let mut weights = vec![0.0; r.cloud.len()];
+            for &own in assignment.iter().filter(|&&own| own != DROPPED) {
+                weights[own as usize] += 1.0;
+            }
+            assert_eq!(weights, r.weights);
+            for (p, &i) in points(&r.cloud.positions_f64()).zip(&r.nearest) {
+                let input = DVec3::from_slice(&positions[3 * i as usize..]);
+                assert!(!dropped(i as usize) && p.distance(input) < 6.0 * spacing);
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_of_a_clean_scan_is_dropped() {
+    let mut scans: Vec<Vec<f64>> = vec![uneven_sphere(20_000, 0.0), uneven_sphere(60_000, 2e-3)];
+    for s in Shape::ALL {
+        scans.extend([300, 3000, 20_000].map(|n| s.sample(n, 0.0, 6)));
+    }
+    // Open sheets with borders and corners: at random, and a grid.
+    let mut rng = Rng::new(2);
+    let wave = |x: f64, y: f64| [x, y, 0.1 * (3.0 * x).sin()];
+    scans.push(
+        (0..10_000)
+            .flat_map(|_| wave(rng.uniform(), rng.uniform()))
+            .collect(),
+    );
+    let grid = |i: i32| wave(f64::from(i % 100) / 99.0, f64::from(i / 100) / 99.0);
+    scans.push((0..10_000).flat_map(grid).collect());
+    // Lines of a scanner, ten times as dense along as across.
+    let line = |i: i32| wave(f64::from(i % 400) / 400.0, f64::from(i / 400) / 40.0);
+    scans.push((0..16_000).flat_map(line).collect());
+    // Every point five times.
+    let once = Shape::Torus.sample(2000, 0.0, 6);
+    scans.push(once.chunks_exact(3).flat_map(|p| p.repeat(5)).collect());
+    for (k, positions) in scans.iter().enumerate() {
+        let cloud = Cloud::from_f64(positions).unwrap();
+        let drop = pipeline::reduce(&cloud, &without_outliers(), &mut Silent).unwrap();
+        assert_eq!(drop.report.outliers, 0, "scan {k}");
+        assert_eq!(drop.report.reason, "");
+        let keep = ReduceParams {
+            outliers: Outliers::Keep,
+            ..without_outliers()
+        };
+        let keep = pipeline::reduce(&cloud, &keep, &mut Silent).unwrap();
+        assert_eq!(drop.reduced.cloud, keep.reduced.cloud, "scan {k}");
+        assert_eq!(drop.reduced.assignment, keep.reduced.assignment);
+    }
+}
+
+#[test]
+fn noise_is_not_isolated() {
+    for n in [2000, 80_000] {
+        for s in Shape::ALL {
+            let diagonal = shape(s, 1000, 0.0).frame.diagonal;
+            let cloud = shape(s, n, 5e-3 * diagonal);
+            let tree = Octree::build(&cloud.points);
+            let noise = Features::measure(&tree, &mut Silent).unwrap().noise;
+            let isolated = outliers::isolated(&tree, noise, &mut Silent).unwrap();
+            let dropped = isolated.iter().filter(|&&is| is).count();
+            assert!(dropped * 1000 <= n, "{s:?}: {dropped} of {n}");
+        }
+    }
+}
+
+#[test]
+fn a_scan_is_not_dropped_as_a_whole() {
+    let few: Vec<f64> = (0..6).flat_map(|i| [f64::from(i * i), 0.0, 1.0]).collect();
+    let mut rng = Rng::new(1);
+    let clumps: Vec<f64> = (0..90)
+        .map(|i| f64::from(i / 24 * 100) + rng.uniform())
+        .collect();
+    for positions in [few, clumps, vec![1.0; 60]] {
+        let cloud = Cloud::from_f64(&positions).unwrap();
+        let result = pipeline::reduce(&cloud, &without_outliers(), &mut Silent).unwrap();
+        assert_eq!(result.report.outliers, 0);
+        let reason = result.report.reason;
+        assert!(reason.contains("isolated: none was dropped"), "{reason}");
+    }
+}
+
+#[test]
+fn a_mesh_is_made_without_the_outliers() {
+    let n = 6000;
+    let mut positions = Shape::Torus.sample(n, 0.0, 5);
+    positions.extend(strays(60));
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    let run = |reduce| {
+        let params = SurfaceParams {
+            reduce,
+            ..Default::default()
+        };
+        pipeline::reconstruct(&cloud, &params, &mut Silent).unwrap()
+    };
+    let params = ReduceParams {
+        target: Target::Ratio(0.4),
+        ..without_outliers()
+    };
+    let surface = run(Some(params.clone()));
+    let dropped = surface.report.reduce.outliers;
+    assert!((60..=96).contains(&dropped), "{dropped}");
+    assert_eq!(surface.cloud.report.outliers, dropped);
+    assert_eq!(surface.report.reduce.input_points, n + 96);
+    assert_eq!(
+        (surface.report.components, &surface.report.genus[..]),
+        (1, &[1][..])
+    );
+    let vertices = surface.positions_f64();
+    assert!(points(&vertices).all(|p| Shape::Torus.distance(p).abs() < 0.1));
+    let r = &surface.cloud.reduced;
+    let assignment = r.assignment.as_ref().unwrap();
+    assert!(r.nearest.iter().all(|&i| assignment[i as usize] != DROPPED));
+    assert_eq!(
+        assignment.iter().filter(|&&i| i == DROPPED).count(),
+        dropped
+    );
+
+    // Too few are left to fit a surface to: all that are not dropped are taken.
+    let all = run(Some(ReduceParams {
+        target: Target::Count(10),
+        ..params
+    }));
+    assert_eq!(all.cloud.reduced.cloud.len(), n + 96 - dropped);
+    assert!(all.report.reduce.reason.contains("all were fitted"));
+    assert_eq!(all.cloud.reduced.assignment.as_ref().unwrap().len(), n + 96);
+    let kept = run(None);
+    assert_eq!(kept.report.reduce.outliers, 0);
+    assert_eq!(kept.cloud.reduced.cloud.len(), n + 96);
+}
+
 #[test]
 fn a_tolerance_asks_for_more_points_when_it_is_small() {
     let cloud = shape(Shape::Torus, 20_000, 0.0);
@@ -626,6 +818,21 @@ fn a_listener_stops_it_at_any_stage() {
             assert_eq!(stopped.err(), Some(Error::Cancelled));
         }
     }
+    // While outliers are sought, and progress does not go back for them.
+    let search = |s: Stage, f: f32| s != Stage::Features || !(0.41..0.59).contains(&f);
+    let stopped = pipeline::reduce(&cloud, &without_outliers(), &mut { search });
+    assert_eq!(stopped.err(), Some(Error::Cancelled));
+    let mut positions = Shape::Sphere.sample(3000, 0.0, 5);
+    positions.extend(strays(30));
+    let mut before = (Stage::Octree, 0.0);
+    let mut forward = |stage: Stage, fraction: f32| {
+        let back = stage == before.0 && fraction < before.1;
+        before = (stage, fraction);
+        !back
+    };
+    let strewn = Cloud::from_f64(&positions).unwrap();
+    let done = pipeline::reduce(&strewn, &without_outliers(), &mut forward).unwrap();
+    assert!(done.report.outliers > 0);
     let bad = ReduceParams {
         fuzzifier: Some(1.0),
         ..Default::default()
