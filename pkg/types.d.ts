@@ -101,6 +101,11 @@ export interface ReduceOptions {
   attributes?: Record<string, Carry>;
   /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
   assignment?: boolean;
+  /**
+   * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
+   * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
+   */
+  outliers?: 'keep' | 'drop';
 }
 
 export interface ReconstructOptions {
@@ -140,12 +145,15 @@ export interface RunReport {
   peakMemoryBytes: number;
   build: Build;
   threads: number;
-  /** Why this build ran. */
+  /** Why this build ran, and why something was not done as it was asked for. */
   reason: string;
 }
 
 export interface ReduceReport extends RunReport {
+  /** Of the cloud that was given, those that were dropped too. */
   inputPoints: number;
+  /** Isolated points that were dropped; all below is about the others. */
+  outliers: number;
   outputPoints: number;
   /** Sub-domains of the octree. */
   cells: number;
@@ -171,11 +179,14 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   normals: Float32Array;
   /** Surface variation λ0/(λ0+λ1+λ2) around the point. */
   variation: Float32Array;
-  /** How many input points it stands for; they sum to the input's count. */
+  /** How many input points it stands for; they sum to the input's count, without the outliers that were dropped. */
   weights: Float32Array;
   /** Index of the nearest input point. */
   nearest: Uint32Array;
-  /** With `assignment`, one entry an input point: the index of the reduced point that it belongs to most. */
+  /**
+   * With `assignment`, one entry an input point: the index of the reduced point that it belongs to most, or 0xffffffff
+   * for an outlier that was dropped.
+   */
   assignment?: Uint32Array;
   report: ReduceReport;
 }

@@ -20,7 +20,7 @@ export function conform(web: typeof browser, server: typeof node): [Functions, F
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });
   const exact: ReducedCloud<Float64Array> = await reduce({ positions: precise }, { target: { count: 10 }, method: 'paper' });
-  const labelled = await reduce(exact, { attributes: { label: 'majority', colors: 'nearest' }, assignment: true });
+  const labelled = await reduce(exact, { attributes: { label: 'majority', colors: 'nearest' }, assignment: true, outliers: 'drop' });
   const members: Uint32Array | undefined = labelled.assignment;
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
   const info: CloudInfo = await inspect(exact);
@@ -46,5 +46,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members];
+  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
 }

@@ -127,6 +127,41 @@ test('every input point is assigned to a reduced point', async () => {
   }
 });
 
+test('outliers are dropped when they are to be, and indices stay those of the input', async () => {
+  const clean = sphere(3000);
+  const strays = [9, 0, 0, -7, 7, 0, 0, 0, 0.02, 0, -8, 6, 0, -8.01, 6];
+  // The strays come first, so that every index of the others is shifted.
+  const cloud = {
+    positions: Float32Array.of(...strays, ...clean.positions),
+    attributes: { index: Float32Array.from({ length: 3005 }, (_, i) => i) },
+  };
+  const options = { outliers: 'drop', assignment: true, attributes: { index: 'nearest' } };
+  const reduced = await reduce(cloud, options);
+  const mesh = await reconstruct(cloud, { reduce: options });
+  for (const { report, assignment, nearest, weights, positions, attributes } of [reduced, mesh.cloud]) {
+    assert.deepEqual([report.inputPoints, report.outliers, report.outputPoints], [3005, 5, 1000]);
+    assert.deepEqual([...assignment.slice(0, 5)], Array(5).fill(0xffffffff));
+    assert.ok(assignment.length === 3005 && assignment.slice(5).every((i) => i < 1000));
+    assert.equal(weights.reduce((sum, w) => sum + w, 0), 3000);
+    assert.ok(nearest.every((i) => i >= 5));
+    assert.deepEqual([...attributes.index], [...nearest]);
+    assert.ok(positions.every((x) => Math.abs(x) < 1.05), 'in the frame of the caller');
+  }
+  assert.equal(mesh.report.outliers, 5);
+  assert.deepEqual(mesh.report.genus, [0]);
+  const kept = await reduce(cloud);
+  assert.equal(kept.report.outliers, 0);
+  assert.equal(kept.weights.reduce((sum, w) => sum + w, 0), 3005);
+  assert.equal((await reconstruct(cloud, { reduce: false })).cloud.report.outliers, 0);
+});
+
+test('what is mostly isolated is not dropped, and the report says so', async () => {
+  const positions = Float32Array.from({ length: 15 }, (_, i) => i * i);
+  const { report } = await reduce({ positions }, { outliers: 'drop' });
+  assert.equal(report.outliers, 0);
+  assert.match(report.reason, /; 5 points, more than half, are isolated: none was dropped$/);
+});
+
 test('georeferenced clouds keep their precision', async () => {
   const center = [4_512_345.678, 543_210.123, 87.5];
   const here = await reduce(sphere(2000, { type: Float64Array }));

@@ -44,6 +44,7 @@ test('every wrong value is named, with what was expected', async () => {
     { cellPoints: 7 }, { maxDepth: 22 },
     { attributes: 'majority' }, { attributes: null }, { attributes: ['height'] }, { attributes: { height: 'median' } },
     { attributes: { height: undefined } }, { attributes: { depth: 'mean' } }, { assignment: 1 }, { assignment: null },
+    { outliers: 'remove' }, { outliers: true },
     { signal: 'stop' }, { onProgress: true }, { transfer: 1 },
   ];
   for (const options of wrong) {
@@ -143,7 +144,8 @@ test('Rust has the same ranges', async () => {
         [{ height: 'other' }, false], [{ depth: 'mean' }, false], ['mean', false]]],
       ['assignment', [[true, true], [false, true], [1, false]]],
       ...[['method', ['adaptive', 'paper']], ['norm', ['euclidean', 'diagonal', 'mahalanobis']],
-        ['clusters', ['proportional', 'validity']], ['placement', ['implicit', 'mesh', 'center', 'sample']]]
+        ['clusters', ['proportional', 'validity']], ['placement', ['implicit', 'mesh', 'center', 'sample']],
+        ['outliers', ['keep', 'drop']]]
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
     ],
     reconstruct: [
