@@ -9,6 +9,8 @@ mod extract;
 mod fcm;
 #[path = "formats.rs"]
 mod formats;
+#[path = "reduce.rs"]
+mod reduce;
 #[path = "report.rs"]
 mod report;
 #[path = "samples.rs"]
