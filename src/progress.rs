@@ -9,7 +9,7 @@ use serde::Serialize;
 pub enum Stage {
     /// Morton order and octree.
     Octree,
-    /// Spacing, normals, curvature, noise.
+    /// Spacing, normals, curvature, noise; isolated points.
     Features,
     /// Fuzzy c-means in the sub-domains (section 3).
     Cluster,
