@@ -16,14 +16,14 @@ use crate::noise::{Scales, quantile};
 use crate::octree::Octree;
 use crate::par;
 use crate::planes::{Plane, Planes};
-use crate::progress::{Progress, Stage};
+use crate::progress::{Part, Progress, Stage};
 use glam::Vec3;
 use std::ops::Range;
 
 /// Per-point features in the octree's (Morton) order; lengths in the unit frame.
 #[derive(Debug, Clone)]
 pub struct Features {
-    /// Wanted distance of neighbours on the surface, √(area a point), from the area of the disc that holds k neighbours.
+    /// Wanted distance of neighbours on the surface, √(area a point), from how many neighbours a disc holds.
     pub spacing: Vec<f32>,
     /// Unit normal of arbitrary sign, filtered; zero where there is none.
     pub normals: Vec<Vec3>,
@@ -39,7 +39,7 @@ pub struct Features {
 }
 
 impl Features {
-    /// Measures them. Cost: one fit and two filter sums a point; about log n + 100 steps a point.
+    /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
         let copies: Vec<Range<usize>> = copies(&tree.points);
@@ -70,11 +70,7 @@ impl Features {
     fn measure_distinct(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         let cells = tree.cut(|node| node.range().len() <= CELL);
         let scales = Scales::measure(tree);
-        let mut part = Part {
-            progress,
-            from: 0.0,
-            to: 0.4,
-        };
+        let mut part = Part::new(progress, 0.0..0.4);
         let planes: Vec<Plane> = par::map_progress(
             cells.len(),
             20.0,
@@ -92,11 +88,7 @@ impl Features {
             noise: scales.noise,
         };
         let mut pass = |from: f32, to: f32, features: &Features, step: Step| {
-            let mut part = Part {
-                progress: part.progress,
-                from,
-                to,
-            };
+            let mut part = Part::new(part.progress, from..to);
             par::map_progress(
                 cells.len(),
                 20.0,
@@ -113,7 +105,7 @@ impl Features {
         Ok(features)
     }
 
-    /// The points moved onto their local quadrics.
+    /// The points moved onto the surface.
     pub fn denoised(&self, tree: &Octree) -> Vec<Vec3> {
         let moved = |i: usize| tree.points[i] - self.residual[i] * self.normals[i];
         (0..tree.points.len()).map(moved).collect()
@@ -135,20 +127,6 @@ pub(crate) fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
         }
     }
     runs
-}
-
-/// A part of a stage's progress.
-pub(crate) struct Part<'a> {
-    pub(crate) progress: &'a mut dyn Progress,
-    pub(crate) from: f32,
-    pub(crate) to: f32,
-}
-
-impl Progress for Part<'_> {
-    fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
-        self.progress
-            .update(stage, self.from + (self.to - self.from) * fraction)
-    }
 }
 
 #[cfg(test)]

@@ -23,11 +23,11 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use crate::error::Result;
-use crate::features::{Part, copies};
+use crate::features::copies;
 use crate::linalg::{outer, sym_eigen};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
-use crate::progress::{Progress, Stage};
+use crate::progress::{Part, Progress, Stage};
 
 /// In place of a reduced point's index in an assignment: the input point was dropped.
 pub const DROPPED: u32 = u32::MAX;
@@ -86,11 +86,7 @@ pub fn isolated(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> Resul
 
 fn isolated_distinct(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> Result<Vec<bool>> {
     let n = tree.points.len();
-    let mut part = Part {
-        progress,
-        from: 0.0,
-        to: 0.3,
-    };
+    let mut part = Part::new(progress, 0.0..0.3);
     let reach = par::map_progress(
         n,
         1.0,
@@ -108,11 +104,7 @@ fn isolated_distinct(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> 
             j != i && f.distance2.sqrt() <= reach[i].min(reach[j]) + THICK.1 * noise
         });
     };
-    let mut part = Part {
-        progress: part.progress,
-        from: 0.3,
-        to: 1.0,
-    };
+    let mut part = Part::new(part.progress, 0.3..1.0);
     let lie = par::map_progress(
         n,
         4.0,

@@ -6,7 +6,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::distance::mesh_distance;
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
-use crate::features::{Features, Part};
+use crate::features::Features;
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::cloud_distance;
@@ -15,13 +15,12 @@ use crate::orient;
 use crate::outliers;
 use crate::par;
 use crate::params::{COLORS, Outliers, ReduceParams, Resolution, SurfaceParams, Target};
-use crate::progress::{Progress, Stage};
+use crate::progress::{Part, Progress, Stage};
 use crate::reduce::{self, Reduced};
 use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
 use glam::Vec3;
 use serde::Serialize;
 use std::borrow::Cow;
-use std::ops::Range;
 use web_time::Instant;
 
 /// A reduced cloud and what its reduction did.
@@ -280,8 +279,9 @@ impl<'a> Input<'a> {
             return Ok(whole(measure(cloud, progress)?, String::new()));
         }
         // Two measurements with the search between them.
-        let (tree, features) = measure(cloud, &mut part(progress, 0.0..0.4))?;
-        let isolated = outliers::isolated(&tree, features.noise, &mut part(progress, 0.4..0.6))?;
+        let (tree, features) = measure(cloud, &mut Part::new(progress, 0.0..0.4))?;
+        let isolated =
+            outliers::isolated(&tree, features.noise, &mut Part::new(progress, 0.4..0.6))?;
         let dropped = isolated.iter().filter(|&&is| is).count();
         if dropped == 0 {
             return Ok(whole((tree, features), String::new()));
@@ -300,7 +300,7 @@ impl<'a> Input<'a> {
             .collect();
         kept.sort_unstable();
         let rest = cloud.select(&kept)?;
-        let (tree, features) = measure(&rest, &mut part(progress, 0.6..1.0))?;
+        let (tree, features) = measure(&rest, &mut Part::new(progress, 0.6..1.0))?;
         Ok(Input {
             cloud: Cow::Owned(rest),
             tree,
@@ -324,15 +324,6 @@ impl<'a> Input<'a> {
             }
             *assignment = all;
         }
-    }
-}
-
-/// A part of a stage's progress.
-fn part(progress: &mut dyn Progress, range: Range<f32>) -> Part<'_> {
-    Part {
-        progress,
-        from: range.start,
-        to: range.end,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use serde::Serialize;
+use std::ops::Range;
 
 /// The steps of a job, in the order in which they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -70,5 +71,26 @@ impl<F: FnMut(Stage, f32) -> bool> Progress for F {
         } else {
             Err(Error::Cancelled)
         }
+    }
+}
+
+/// A part of a stage's progress.
+pub(crate) struct Part<'a> {
+    pub(crate) progress: &'a mut dyn Progress,
+    range: Range<f32>,
+}
+
+impl<'a> Part<'a> {
+    /// What is told to it, from 0 to 1, goes on as fractions of `range`.
+    pub(crate) fn new(progress: &'a mut dyn Progress, range: Range<f32>) -> Part<'a> {
+        Part { progress, range }
+    }
+}
+
+impl Progress for Part<'_> {
+    fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
+        let Range { start, end } = self.range;
+        self.progress
+            .update(stage, start + (end - start) * fraction)
     }
 }
