@@ -126,6 +126,22 @@ class PageUnderTest {
     await this.settled();
   }
 
+  /** Does what makes the page work again, and waits until that result is shown, however short the work was. */
+  async remade(action) {
+    const begun = await this.page.evaluateHandle(() => {
+      const app = document.querySelector('#app');
+      const begun = new Promise((heard) => new MutationObserver((_, observer) => {
+        if (app.dataset.state !== 'working') return;
+        observer.disconnect();
+        heard();
+      }).observe(app, { attributeFilter: ['data-state'] }));
+      return { begun };
+    });
+    await action();
+    await begun.evaluate(({ begun }) => begun);
+    await this.made();
+  }
+
   /** Waits until this file is open and its mesh is made. */
   async opened(name) {
     await this.page.waitForFunction((title) => document.querySelector('#caption-title').textContent === title, name, { timeout: PATIENCE });

@@ -146,17 +146,15 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
 
   await t.test('another share of the points gives exactly that many', async () => {
     const before = await site.number('triangles');
-    await page.fill('#keep-field', '12.5');
-    await page.waitForSelector('#app[data-state="working"]');
-    await site.made();
+    await site.remade(() => page.fill('#keep-field', '12.5'));
     assert.equal(await site.number('outputPoints'), Math.round(DUCK * 0.125));
     assert.notEqual(await site.number('triangles'), before);
 
     // Several steps of the slider in a row: only the last one counts.
     await page.focus('#keep-slider');
-    for (let step = 0; step < 5; step++) await page.keyboard.press('PageUp');
-    await page.waitForSelector('#app[data-state="working"]');
-    await site.made();
+    await site.remade(async () => {
+      for (let step = 0; step < 5; step++) await page.keyboard.press('PageUp');
+    });
     const share = Number(await page.inputValue('#keep-field')) / 100;
     assert.ok(share > 0.125, 'the slider moved the field');
     assert.equal(await site.number('outputPoints'), Math.round(DUCK * share));
