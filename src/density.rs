@@ -69,23 +69,6 @@ impl Density {
         }
     }
 
-    /// The density that keeps a piecewise linear surface within `tolerance`: a chord of length h over curvature κ is off by
-    /// κh²/8, so h = √(8 tolerance/κ), at most [`WIDEST`].
-    pub fn within(tree: &Octree, features: &Features, tolerance: f64) -> Density {
-        let groups = Groups::new(tree, features);
-        let reach = |k: &f64| {
-            (8.0 * tolerance / k.max(f64::MIN_POSITIVE))
-                .sqrt()
-                .min(WIDEST) as f32
-        };
-        let wanted = groups.curvature.iter().map(reach).collect();
-        let spacing = groups.spread(tree, wanted);
-        let share = deserved(features, &spacing)
-            .map(|d| d.min(1.0) as f32)
-            .collect();
-        Density { spacing, share }
-    }
-
     /// The number of reduced points that the shares add up to, rounded up.
     pub fn count(&self) -> usize {
         let total: f64 = self.share.iter().map(|&s| f64::from(s)).sum();
@@ -96,6 +79,36 @@ impl Density {
     pub fn shares(&self, cells: &[Range<usize>]) -> Vec<f64> {
         let of = |cell: &Range<usize>| self.share[cell.clone()].iter().map(|&s| f64::from(s)).sum();
         cells.iter().map(of).collect()
+    }
+}
+
+/// Densities of surfaces whose error curvature alone decides, for one cloud.
+pub struct CurvatureSpacing<'a> {
+    tree: &'a Octree,
+    features: &'a Features,
+    groups: Groups,
+}
+
+impl<'a> CurvatureSpacing<'a> {
+    /// Cost: as [`Density::new`].
+    pub fn new(tree: &'a Octree, features: &'a Features) -> CurvatureSpacing<'a> {
+        CurvatureSpacing {
+            tree,
+            features,
+            groups: Groups::new(tree, features),
+        }
+    }
+
+    /// The density of a piecewise linear surface whose chords are off by `chord`: one of length h over curvature κ is off by
+    /// κh²/8, so h = √(8 chord/κ), at most [`WIDEST`].
+    pub fn within(&self, chord: f64) -> Density {
+        let reach = |k: &f64| (8.0 * chord / k.max(f64::MIN_POSITIVE)).sqrt().min(WIDEST) as f32;
+        let wanted = self.groups.curvature.iter().map(reach).collect();
+        let spacing = self.groups.spread(self.tree, wanted);
+        let share = deserved(self.features, &spacing)
+            .map(|d| d.min(1.0) as f32)
+            .collect();
+        Density { spacing, share }
     }
 }
 

@@ -49,6 +49,20 @@ pub fn cloud_distance(
     normals: &[Vec3],
     progress: &mut dyn Progress,
 ) -> Result<DistanceStats> {
+    let distances = cloud_distances(points, reduced, normals, progress)?;
+    Ok(DistanceStats::of(distances.into_iter().map(f64::from)))
+}
+
+/// The distance of every point, as [`cloud_distance`].
+///
+/// # Errors
+/// The same.
+pub fn cloud_distances(
+    points: &[Vec3],
+    reduced: &Octree,
+    normals: &[Vec3],
+    progress: &mut dyn Progress,
+) -> Result<Vec<f32>> {
     let normals: Vec<Vec3> = reduced.order.iter().map(|&i| normals[i as usize]).collect();
     let surface = Surface {
         points,
@@ -62,9 +76,7 @@ pub fn cloud_distance(
         Scratch::default,
         |i, scratch| surface.cell(i * CELL..((i + 1) * CELL).min(points.len()), scratch),
     )?;
-    Ok(DistanceStats::of(
-        distances.into_iter().flatten().map(f64::from),
-    ))
+    Ok(distances.concat())
 }
 
 /// Queries, and the points with normals that they ask for.

@@ -56,6 +56,7 @@ pub mod fcm;
 pub mod clusters;
 pub mod placement;
 pub mod paper;
+mod tolerance;
 pub mod reduce;
 pub mod cells;
 pub mod fit;

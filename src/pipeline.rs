@@ -150,7 +150,7 @@ pub fn reconstruct(
         let found = "all points lie on one line or at one place".into();
         return Err(Error::Degenerate { found });
     }
-    let (mut reduced, reason) = points_to_fit(&input, params, &mut clock)?;
+    let mut reduced = points_to_fit(&input, params, &mut clock)?;
     let sites = sites(&reduced, features.noise, params.orient, &mut clock)?;
     let subdomains = cells::divide(&sites, &mut clock)?;
     let fits = fit::fit(subdomains, &sites, tree, features.noise, params, &mut clock)?;
@@ -167,12 +167,7 @@ pub fn reconstruct(
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
     let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
-    let mut report = reduce_report(&input, &reduced, distance, &clock);
-    report.reason = [input.reason.as_str(), &reason]
-        .into_iter()
-        .filter(|r| !r.is_empty())
-        .collect::<Vec<_>>()
-        .join("; ");
+    let report = reduce_report(&input, &reduced, distance, &clock);
     input.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
@@ -371,12 +366,12 @@ fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
     }
 }
 
-/// The reduced cloud that surfaces are fitted to, and why it is not what was asked for, where it is not.
+/// The reduced cloud that surfaces are fitted to.
 fn points_to_fit(
     input: &Input,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
-) -> Result<(Reduced, String)> {
+) -> Result<Reduced> {
     let Input {
         cloud,
         tree,
@@ -386,7 +381,7 @@ fn points_to_fit(
     if let Some(params) = &params.reduce {
         let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
         if reduced.cloud.len() >= MIN_REDUCED.min(cloud.len()) {
-            return Ok((reduced, String::new()));
+            return Ok(reduced);
         }
     }
     let all = ReduceParams {
@@ -394,14 +389,11 @@ fn points_to_fit(
         assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
         ..Default::default()
     };
-    let reason = match params.reduce {
-        Some(_) => format!("fewer than {MIN_REDUCED} points would be left: all were fitted"),
-        None => String::new(),
-    };
-    Ok((
-        reduce::reduce(cloud, tree, features, &all, progress)?,
-        reason,
-    ))
+    let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
+    if params.reduce.is_some() {
+        reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
+    }
+    Ok(reduced)
 }
 
 /// The reduced points as sites of the fit.
@@ -477,7 +469,11 @@ fn reduce_report(
         }
         .into(),
         threads: par::threads(),
-        reason: input.reason.clone(),
+        reason: [input.reason.as_str(), &reduced.reason]
+            .into_iter()
+            .filter(|reason| !reason.is_empty())
+            .collect::<Vec<_>>()
+            .join("; "),
         ..Default::default()
     }
 }

@@ -78,19 +78,35 @@ impl<F: FnMut(Stage, f32) -> bool> Progress for F {
 pub(crate) struct Part<'a> {
     pub(crate) progress: &'a mut dyn Progress,
     range: Range<f32>,
+    stage: Option<Stage>,
 }
 
 impl<'a> Part<'a> {
     /// What is told to it, from 0 to 1, goes on as fractions of `range`.
     pub(crate) fn new(progress: &'a mut dyn Progress, range: Range<f32>) -> Part<'a> {
-        Part { progress, range }
+        Part {
+            progress,
+            range,
+            stage: None,
+        }
+    }
+
+    /// The same, whatever stages it hears of, as a part of this one.
+    pub(crate) fn of(stage: Stage, progress: &'a mut dyn Progress, range: Range<f32>) -> Part<'a> {
+        Part {
+            progress,
+            range,
+            stage: Some(stage),
+        }
     }
 }
 
 impl Progress for Part<'_> {
     fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
         let Range { start, end } = self.range;
-        self.progress
-            .update(stage, start + (end - start) * fraction)
+        self.progress.update(
+            self.stage.unwrap_or(stage),
+            start + (end - start) * fraction,
+        )
     }
 }

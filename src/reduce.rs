@@ -6,16 +6,18 @@ use glam::Vec3;
 
 use crate::cloud::Cloud;
 use crate::clusters::{self, SHARES, Samples, Settling, Shares};
-use crate::density::{self, Density};
+use crate::density::{self, CurvatureSpacing, Density};
 use crate::error::Result;
 use crate::features::Features;
+use crate::height_field::cloud_distances;
 use crate::octree::{Neighbor, Octree};
 use crate::paper;
 use crate::par;
 use crate::params::{Method, Placement, ReduceParams, Target};
-use crate::placement::{self, Members};
+use crate::placement::{self, Members, Placed};
 use crate::power::Fuzzifier;
-use crate::progress::{Progress, Stage};
+use crate::progress::{Part, Progress, Stage};
+use crate::tolerance;
 
 /// A reduced cloud. Every array but `assignment` has one entry a reduced point.
 #[derive(Debug, Clone)]
@@ -36,6 +38,8 @@ pub struct Reduced {
     pub assignment: Option<Vec<u32>>,
     /// What the clustering did.
     pub stats: ReduceStats,
+    /// Why the count is not what was asked for, where it is not; else empty.
+    pub reason: String,
 }
 
 /// Figures of one reduction.
@@ -86,36 +90,22 @@ pub fn reduce(
     params.validate()?;
     let power = Fuzzifier::new(fuzzifier(params));
     let denoised = features.denoised(tree);
-    let goal = Goal::new(params, tree, features);
-    let clustering = match &goal {
-        Goal::Count(count) | Goal::Density(count, _) if *count == cloud.len() => {
-            keep_all(tree, features)
-        }
-        Goal::Flatness => paper::cluster(tree, features, None, params, progress)?,
-        Goal::Count(count) => paper::cluster(tree, features, Some(*count), params, progress)?,
-        Goal::Density(count, density) => {
-            let samples = Samples {
-                points: &denoised,
-                features,
-                density,
-            };
-            adaptive(tree, samples, *count, params, progress)?
-        }
-    };
-    progress.update(Stage::Place, 0.0)?;
-    let placement = match (params.placement, goal) {
-        (Placement::Sample, _) => Placement::Sample,
-        (other, Goal::Density(count, _)) if count < cloud.len() => other,
-        _ => Placement::Center,
-    };
-    let members = Members::new(&clustering.shares, clustering.centers.len());
-    let mut placed = placement::place(
-        &denoised,
+    let job = Job {
+        tree,
         features,
-        &clustering.centers,
-        &members,
-        (placement, power),
-    );
+        denoised: &denoised,
+        params,
+    };
+    let (goal, reason) = job.goal(progress)?;
+    let searched = match params.target {
+        Target::Tolerance(_) => tolerance::DONE,
+        _ => 0.0,
+    };
+    let clustering = job.cluster(&goal, &mut Part::new(progress, searched..1.0))?;
+    progress.update(Stage::Place, 0.0)?;
+    let placement = job.placement(&goal);
+    let members = Members::new(&clustering.shares, clustering.centers.len());
+    let mut placed = job.place(&clustering, &members, placement);
     progress.update(Stage::Place, 0.5)?;
     let nearest = if placement == Placement::Sample {
         placement::snap(tree, &clustering.shares, &members, &mut placed)
@@ -148,6 +138,7 @@ pub fn reduce(
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
         stats,
+        reason,
     })
 }
 
@@ -169,28 +160,112 @@ enum Goal {
     Flatness,
 }
 
-impl Goal {
-    fn new(params: &ReduceParams, tree: &Octree, features: &Features) -> Goal {
-        let n = tree.points.len();
-        let count = match params.target {
+/// What a reduction works on.
+struct Job<'a> {
+    tree: &'a Octree,
+    features: &'a Features,
+    denoised: &'a [Vec3],
+    params: &'a ReduceParams,
+}
+
+impl Job<'_> {
+    /// What to do, and why it is not what was asked for, where it is not.
+    fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal, String)> {
+        let n = self.tree.points.len();
+        let count = match self.params.target {
             Target::Ratio(ratio) => ((n as f64 * ratio).round() as usize).clamp(1, n),
             Target::Count(count) => count.min(n),
-            Target::Flatness(_) => return Goal::Flatness,
+            Target::Flatness(_) => return Ok((Goal::Flatness, String::new())),
             Target::Tolerance(tolerance) => {
-                let density = Density::within(tree, features, tolerance);
-                return match params.method {
-                    Method::Paper => Goal::Count(density.count()),
-                    Method::Adaptive => Goal::Density(density.count(), density),
-                };
+                let (tolerance, reason) = tolerance::allowed(self.features, tolerance);
+                return Ok((self.within(tolerance, progress)?, reason));
             }
         };
-        match params.method {
+        let goal = match self.params.method {
             Method::Paper => Goal::Count(count),
-            Method::Adaptive => Goal::Density(
-                count,
-                Density::new(tree, features, count, params.curvature_weight),
-            ),
+            Method::Adaptive => {
+                let alpha = self.params.curvature_weight;
+                let density = Density::new(self.tree, self.features, count, alpha);
+                Goal::Density(count, density)
+            }
+        };
+        Ok((goal, String::new()))
+    }
+
+    /// Looks for the fewest points that keep the surface within a tolerance.
+    fn within(&self, tolerance: f64, progress: &mut dyn Progress) -> Result<Goal> {
+        let curvature = CurvatureSpacing::new(self.tree, self.features);
+        let goal = |chord: f64| {
+            let density = curvature.within(chord);
+            match self.params.method {
+                Method::Paper => Goal::Count(density.count()),
+                Method::Adaptive => Goal::Density(density.count(), density),
+            }
+        };
+        let n = self.tree.points.len();
+        let chord = tolerance::search(self.features, tolerance, progress, |chord, progress| {
+            let goal = goal(chord);
+            let clustering = self.cluster(&goal, progress)?;
+            if clustering.centers.len() == n {
+                return Ok(None);
+            }
+            let members = Members::new(&clustering.shares, clustering.centers.len());
+            let placed = self.place(&clustering, &members, self.placement(&goal));
+            let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
+            let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
+            let sites = Octree::build(&positions);
+            cloud_distances(self.denoised, &sites, &normals, progress).map(Some)
+        })?;
+        Ok(goal(chord))
+    }
+
+    fn cluster(&self, goal: &Goal, progress: &mut dyn Progress) -> Result<Clustering> {
+        let Job {
+            tree,
+            features,
+            params,
+            ..
+        } = *self;
+        match goal {
+            Goal::Count(count) | Goal::Density(count, _) if *count == tree.points.len() => {
+                Ok(keep_all(tree, features))
+            }
+            Goal::Flatness => paper::cluster(tree, features, None, params, progress),
+            Goal::Count(count) => paper::cluster(tree, features, Some(*count), params, progress),
+            Goal::Density(count, density) => {
+                let samples = Samples {
+                    points: self.denoised,
+                    features,
+                    density,
+                };
+                adaptive(tree, samples, *count, params, progress)
+            }
         }
+    }
+
+    /// The placement that applies: points that are all kept, and the paper's centres, stay where they are.
+    fn placement(&self, goal: &Goal) -> Placement {
+        match (self.params.placement, goal) {
+            (Placement::Sample, _) => Placement::Sample,
+            (other, Goal::Density(count, _)) if *count < self.tree.points.len() => other,
+            _ => Placement::Center,
+        }
+    }
+
+    fn place(
+        &self,
+        clustering: &Clustering,
+        members: &Members,
+        placement: Placement,
+    ) -> Vec<Placed> {
+        let power = Fuzzifier::new(fuzzifier(self.params));
+        placement::place(
+            self.denoised,
+            self.features,
+            &clustering.centers,
+            members,
+            (placement, power),
+        )
     }
 }
 

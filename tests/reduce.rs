@@ -6,12 +6,14 @@ use common::{Shape, points};
 use glam::{DVec3, Vec3};
 use pointweave::density::quotas;
 use pointweave::features::Features;
+use pointweave::height_field::cloud_distances;
 use pointweave::octree::Octree;
 use pointweave::outliers::{self, DROPPED};
 use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Outliers, Placement, Target};
 use pointweave::progress::Silent;
 use pointweave::reduce::{Reduced, reduce};
 use pointweave::rng::Rng;
+use pointweave::samples::{Model, NOISE, sample_with_noise};
 use pointweave::{Cloud, Error, ReduceParams, Stage, SurfaceParams, pipeline};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -675,27 +677,86 @@ fn a_mesh_is_made_without_the_outliers() {
     assert_eq!(kept.cloud.reduced.cloud.len(), n + 96);
 }
 
+/// Points of a model's true surface where a scan of it has seen any, in the scan's unit frame.
+fn true_surface(model: Model, scan: &Cloud) -> Vec<Vec3> {
+    let truth = sample_with_noise(model, 40_000, 77, 0.0).positions;
+    let unit = |p: &[f32]| scan.frame.to_unit([p[0], p[1], p[2]].map(f64::from));
+    let tree = Octree::build(&scan.points);
+    let near = |p: &Vec3| tree.nearest(*p).distance2.sqrt() < 0.01;
+    truth.chunks_exact(3).map(unit).filter(near).collect()
+}
+
+/// What 99 % of the true surface are within of the local surfaces that reduced points stand for.
+fn covered_within(truth: &[Vec3], r: &Reduced) -> f64 {
+    let sites = Octree::build(&r.cloud.points);
+    let normals = r.cloud.normals.as_deref().unwrap();
+    let mut distances = cloud_distances(truth, &sites, normals, &mut Silent).unwrap();
+    distances.sort_unstable_by(f32::total_cmp);
+    f64::from(distances[distances.len() * 99 / 100])
+}
+
 #[test]
-fn a_tolerance_asks_for_more_points_when_it_is_small() {
-    let cloud = shape(Shape::Torus, 20_000, 0.0);
+fn a_tolerance_is_kept_with_hardly_more_points_than_needed() {
+    for (model, noise, tolerance) in [
+        (Model::Duck, 0.0, 3e-3),
+        (Model::Duck, 0.0, 1e-3),
+        (Model::Duck, NOISE, 1e-3),
+        (Model::Pig, NOISE, 3e-3),
+        (Model::Part, NOISE, 3e-3),
+    ] {
+        let cloud = Cloud::from_f32(&sample_with_noise(model, 36_000, 1, noise).positions).unwrap();
+        let truth = true_surface(model, &cloud);
+        let params = ReduceParams {
+            target: Target::Tolerance(tolerance),
+            ..Default::default()
+        };
+        let r = run(&cloud, &params);
+        let within = covered_within(&truth, &r);
+        assert!(within <= tolerance, "{model:?} {tolerance}: {within}");
+        assert!(r.reason.is_empty(), "{}", r.reason);
+        // With the best count that a search could find, 1.3 times fewer would still do.
+        let fewer = run(&cloud, &count((r.cloud.len() as f64 / 1.3) as usize));
+        let within = covered_within(&truth, &fewer);
+        assert!(within > tolerance, "{model:?} {tolerance}: {within}");
+    }
+}
+
+#[test]
+fn the_papers_method_keeps_a_tolerance_too() {
+    let cloud = shape(Shape::Torus, 8000, 0.0);
+    let truth = shape(Shape::Torus, 30_000, 0.0);
     let reduced = |tolerance| {
-        let target = Target::Tolerance(tolerance);
-        run(
-            &cloud,
-            &ReduceParams {
-                target,
-                ..Default::default()
-            },
-        )
-        .cloud
-        .len()
+        let params = ReduceParams {
+            method: Method::Paper,
+            target: Target::Tolerance(tolerance),
+            ..Default::default()
+        };
+        run(&cloud, &params)
     };
-    let (coarse, fine) = (reduced(2e-3), reduced(1e-3));
-    // Halving ε halves h²: twice the points.
-    assert!(
-        (1.6..2.4).contains(&(fine as f64 / coarse as f64)),
-        "{coarse} {fine}"
-    );
+    let (coarse, fine) = (reduced(4e-3), reduced(2e-3));
+    assert!(coarse.cloud.len() < fine.cloud.len() && fine.cloud.len() < cloud.len() / 2);
+    for (r, tolerance) in [(coarse, 4e-3), (fine, 2e-3)] {
+        let within = covered_within(&truth.points, &r);
+        assert!(within <= tolerance, "{tolerance}: {within}");
+    }
+}
+
+#[test]
+fn a_tolerance_finer_than_noise_allows_says_so_and_one_finer_than_the_scan_keeps_almost_all() {
+    let run = |noise, tolerance| {
+        let target = Target::Tolerance(tolerance);
+        let params = ReduceParams {
+            target,
+            ..Default::default()
+        };
+        run(&shape(Shape::Torus, 6000, noise), &params)
+    };
+    let noisy = run(2e-3, 1e-5);
+    assert!(noisy.reason.contains("noise"), "{}", noisy.reason);
+    assert!(noisy.cloud.len() < 6000);
+    let clean = run(0.0, 1e-9);
+    // 99 % of the surface are promised.
+    assert!(clean.cloud.len() > 5940 && clean.reason.is_empty());
 }
 
 #[test]
