@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use crate::borders;
 use crate::cloud::Cloud;
 use crate::clusters::{self, SHARES, Samples, Settling, Shares};
 use crate::density::{self, CurvatureSpacing, Density};
@@ -105,7 +106,7 @@ pub fn reduce(
     progress.update(Stage::Place, 0.0)?;
     let placement = job.placement(&goal);
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let mut placed = job.place(&clustering, &members, placement);
+    let mut placed = job.place(&clustering, &members, &goal);
     progress.update(Stage::Place, 0.5)?;
     let nearest = if placement == Placement::Sample {
         placement::snap(tree, &clustering.shares, &members, &mut placed)
@@ -210,7 +211,7 @@ impl Job<'_> {
                 return Ok(None);
             }
             let members = Members::new(&clustering.shares, clustering.centers.len());
-            let placed = self.place(&clustering, &members, self.placement(&goal));
+            let placed = self.place(&clustering, &members, &goal);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let sites = Octree::build(&positions);
@@ -252,20 +253,25 @@ impl Job<'_> {
         }
     }
 
-    fn place(
-        &self,
-        clustering: &Clustering,
-        members: &Members,
-        placement: Placement,
-    ) -> Vec<Placed> {
+    fn place(&self, clustering: &Clustering, members: &Members, goal: &Goal) -> Vec<Placed> {
+        let placement = self.placement(goal);
         let power = Fuzzifier::new(fuzzifier(self.params));
-        placement::place(
+        let mut placed = placement::place(
             self.denoised,
             self.features,
             &clustering.centers,
             members,
             (placement, power),
-        )
+        );
+        if matches!(goal, Goal::Density(..)) && placement != Placement::Center {
+            borders::restore(
+                self.tree,
+                (self.denoised, self.features),
+                (&clustering.shares, members),
+                &mut placed,
+            );
+        }
+        placed
     }
 }
 

@@ -677,6 +677,64 @@ fn a_mesh_is_made_without_the_outliers() {
     assert_eq!(kept.cloud.reduced.cloud.len(), n + 96);
 }
 
+#[test]
+fn open_borders_stay_where_they_are() {
+    // A wavy square sheet as a depth camera would see it, noise included.
+    let side = 120;
+    let row = |count: usize| 4.0 * (count as f64).sqrt();
+    for (noise, ratio) in [(0.0, 4), (0.0, 10), (1e-3, 4), (1e-3, 10)] {
+        let mut rng = Rng::new(8);
+        let positions: Vec<f64> = (0..side * side)
+            .flat_map(|k| {
+                let [x, y] = [k % side, k / side].map(|i| i as f64 / (side - 1) as f64 - 0.5);
+                [x, y, 0.15 * (4.0 * x).sin() + noise * rng.normal()]
+            })
+            .collect();
+        let cloud = Cloud::from_f64(&positions).unwrap();
+        for placement in [Placement::Implicit, Placement::Mesh, Placement::Sample] {
+            let r = run(
+                &cloud,
+                &ReduceParams {
+                    placement,
+                    ..count(side * side / ratio)
+                },
+            );
+            assert_sound(&cloud, &r);
+            let spacing = (1.0 / r.cloud.len() as f64).sqrt();
+            let positions = r.cloud.positions_f64();
+            // How far inside of the border, in spacings.
+            let inside: Vec<f64> = points(&positions)
+                .map(|p| (0.5 - p.x.abs().max(p.y.abs())) / spacing)
+                .collect();
+            let among = |range: std::ops::Range<f64>| {
+                inside.iter().filter(|d| range.contains(d)).count() as f64
+            };
+            let row = row(r.cloud.len());
+            let half = 0.5 / (ratio as f64).sqrt();
+            let on = among(-half..0.25);
+            assert!(
+                on > 0.75 * row && among(0.25..0.5) < 0.12 * row,
+                "{noise} {ratio} {placement:?}: {on} of {row}"
+            );
+            // None is farther out than half an input spacing.
+            assert_eq!(among(-9.0..-half), 0.0);
+        }
+        // The paper's centres, and raw ones, are means.
+        let raw = run(
+            &cloud,
+            &ReduceParams {
+                placement: Placement::Center,
+                ..count(side * side / ratio)
+            },
+        );
+        let positions = raw.cloud.positions_f64();
+        let on = points(&positions).filter(|p| {
+            0.5 - p.x.abs().max(p.y.abs()) < 0.1 * (1.0 / raw.cloud.len() as f64).sqrt()
+        });
+        assert!((on.count() as f64) < 0.3 * row(raw.cloud.len()));
+    }
+}
+
 /// Points of a model's true surface where a scan of it has seen any, in the scan's unit frame.
 fn true_surface(model: Model, scan: &Cloud) -> Vec<Vec3> {
     let truth = sample_with_noise(model, 40_000, 77, 0.0).positions;
