@@ -34,6 +34,8 @@ const SHEET_SINE: f32 = 0.2;
 /// Ridge on the quadric's second derivatives, relative to the weight of the data: a plane where the data leave them
 /// open, unnoticeable elsewhere.
 const RIDGE: f32 = 1e-5;
+/// Weight below which members say nothing of their face: products of weights would leave the range of single precision.
+const LIGHT: f32 = 1e-6;
 /// Coefficients of a quadric.
 const QUADRIC: usize = 6;
 
@@ -288,8 +290,8 @@ fn height(around: &[Member], up: [Lanes; 3], total: Lanes) -> Lanes {
     let c = solve(matrix, right);
     let height = c[0].max(Lanes::ZERO - c[0]);
     let height = height / (one + c[1] * c[1] + c[2] * c[2]).sqrt();
-    // A lane without members on this face has none.
-    Lanes::ZERO.less(total, height, Lanes::splat(f32::INFINITY))
+    // A lane without members on this face, or with one at the rim of its support only, has none.
+    Lanes::splat(LIGHT).less(total, height, Lanes::splat(f32::INFINITY))
 }
 
 /// Two unit vectors across each lane's unit vector (Duff et al., "Building an orthonormal basis, revisited", 2017).

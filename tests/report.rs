@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use pointweave::distance::{TriangleTree, closest_on_triangle, mesh_distance};
-use pointweave::height_field::cloud_distance;
+use pointweave::height_field::{cloud_distance, cloud_distances};
 use pointweave::octree::Octree;
 use pointweave::progress::Silent;
 use pointweave::report::{
@@ -228,6 +228,30 @@ fn cloud_distance_keeps_thin_sheets_apart() {
         .collect();
     let stats = cloud_distance(&queries, &tree, &normals, &mut Silent).expect("not cancelled");
     assert!(stats.mean < 5e-4, "{stats:?}");
+}
+
+#[test]
+fn a_face_that_just_touches_the_support_does_not_count() {
+    // Eight points on a plane below the query, and one of another face at the rim: at 1.2 times the eighth's distance.
+    let ring = (0..8).map(|k| {
+        let angle = k as f32;
+        (0.4 + k as f32 * 0.6 / 7.0) * Vec3::new(angle.cos(), angle.sin(), 0.0)
+    });
+    for ulps in 1..200 {
+        let radius = 1.2 * (1.0f32 + 0.1 * 0.1).sqrt();
+        let rim = Vec3::new(0.0, 0.0, f32::from_bits(radius.to_bits() - ulps));
+        let points: Vec<Vec3> = ring
+            .clone()
+            .map(|p| p + Vec3::new(0.0, 0.0, 0.1))
+            .chain([rim])
+            .collect();
+        let mut normals = vec![Vec3::Z; 8];
+        normals.push(Vec3::X);
+        let query = [Vec3::ZERO];
+        let found =
+            cloud_distances(&query, &Octree::build(&points), &normals, &mut Silent).unwrap();
+        assert!((found[0] - 0.1).abs() < 1e-3, "{ulps}: {}", found[0]);
+    }
 }
 
 #[test]
