@@ -2,26 +2,46 @@
 
 use crate::error::{Error, Result};
 use glam::Vec3;
+use std::ops::Range;
+
+/// The bounding box is that of the others where a few points are this many diagonals away: single precision would leave too
+/// little for what is near. Farther than the end of the range nothing can be told of them.
+const FAR_OUT: Range<f64> = 1e3..1e15;
+/// Those are less than this share of the points, on any side.
+const A_FEW: f64 = 0.02;
+/// Points that tell where most are.
+const SAMPLE: usize = 4096;
 
 /// Where the unit frame lies in the caller's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Centre of the bounding box, in the caller's frame and unit.
     pub center: [f64; 3],
-    /// Diagonal of the bounding box in the caller's unit; 1 when all points are equal.
+    /// Diagonal of the bounding box in the caller's unit; 1 when all points are equal. Without the few points that are a
+    /// thousand times farther out than all others.
     pub diagonal: f64,
 }
 
 impl Frame {
     /// The frame of these points, or the index of the first coordinate that is not finite.
     fn of(positions: &[f64]) -> std::result::Result<Frame, usize> {
+        if let Some(i) = positions.iter().position(|x| !x.is_finite()) {
+            return Err(i);
+        }
+        let all = Frame::around(positions.chunks_exact(3));
+        let most = Frame::around_most(positions);
+        let far_out = |frame: &Frame| FAR_OUT.contains(&(all.diagonal / frame.diagonal));
+        Ok(most.filter(far_out).unwrap_or(all))
+    }
+
+    /// The frame of the bounding box.
+    fn around<'a>(points: impl Iterator<Item = &'a [f64]>) -> Frame {
         let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for (i, &x) in positions.iter().enumerate() {
-            if !x.is_finite() {
-                return Err(i);
+        for p in points {
+            for a in 0..3 {
+                lo[a] = lo[a].min(p[a]);
+                hi[a] = hi[a].max(p[a]);
             }
-            lo[i % 3] = lo[i % 3].min(x);
-            hi[i % 3] = hi[i % 3].max(x);
         }
         // Halved before they are added or subtracted: extents up to the largest f64 do not overflow.
         let center = [0, 1, 2].map(|a| lo[a] * 0.5 + hi[a] * 0.5);
@@ -33,7 +53,32 @@ impl Frame {
         } else {
             1.0
         };
-        Ok(Frame { center, diagonal })
+        Frame { center, diagonal }
+    }
+
+    /// The frame of the points near most of them; `None` where that would leave out more than [`A_FEW`], or where most are at
+    /// one place.
+    fn around_most(positions: &[f64]) -> Option<Frame> {
+        let count = positions.len() / 3;
+        let stride = count.div_ceil(SAMPLE);
+        let sides = [0, 1, 2].map(|a| {
+            let mut x: Vec<f64> = positions[a..].iter().step_by(3 * stride).copied().collect();
+            x.sort_unstable_by(f64::total_cmp);
+            let few = (x.len() as f64 * A_FEW).ceil() as usize;
+            [x.get(few).copied(), x.iter().nth_back(few).copied()]
+        });
+        let mut corners = [[0.0; 3]; 2];
+        for (a, side) in sides.into_iter().enumerate() {
+            for (corner, x) in corners.iter_mut().zip(side) {
+                corner[a] = x?;
+            }
+        }
+        let inner = Frame::around(corners.iter().map(|c| c.as_slice()));
+        let near =
+            |p: &&[f64]| (0..3).all(|a| (p[a] - inner.center[a]).abs() < 10.0 * inner.diagonal);
+        let near = || positions.chunks_exact(3).filter(near);
+        let most = (count as f64 * (1.0 - A_FEW)).ceil() as usize;
+        (corners[0] != corners[1] && near().count() >= most).then(|| Frame::around(near()))
     }
 
     /// A point of the caller's frame in the unit frame.

@@ -21,6 +21,8 @@ const SUPPORT: f32 = 1.2;
 const FEW: f32 = 2.5;
 /// A cell gathers this many times as far as an even patch over its box would need, as few have an even patch.
 const MARGIN: f32 = 1.6;
+/// Share of the second moments about the point that the moments about the mean must have. At a straight border it is a fifth.
+const ROUNDING: f32 = 1e-3;
 
 /// What the neighbours of one point tell.
 #[derive(Debug, Clone, Copy, Default)]
@@ -141,14 +143,19 @@ fn fit(sums: [Lanes; 10], radius: f32) -> impl Iterator<Item = Plane> {
     let [w, x, y, z, xx, xy, xz, yy, yz, zz] = sums;
     let inverse = Lanes::splat(1.0) / w;
     let (x, y, z) = (x * inverse, y * inverse, z * inverse);
+    let (xx, yy, zz) = (xx * inverse, yy * inverse, zz * inverse);
     let covariance = [
-        xx * inverse - x * x,
+        xx - x * x,
         xy * inverse - x * y,
         xz * inverse - x * z,
-        yy * inverse - y * y,
+        yy - y * y,
         yz * inverse - y * z,
-        zz * inverse - z * z,
+        zz - z * z,
     ];
+    // Where all neighbours are in one place far away, what is left of their moments is rounding.
+    let left = covariance[0] + covariance[3] + covariance[5];
+    let told = (Lanes::splat(ROUNDING) * (xx + yy + zz)).less(left, Lanes::splat(1.0), Lanes::ZERO);
+    let covariance = covariance.map(|m| m * told);
     let (variation, normal) = least_axis(covariance);
     // The point itself counts: reduced points keep apart, as a lattice does, and with it the sum is the lattice's.
     let disc = Lanes::splat(std::f32::consts::PI / 3.0 * radius * radius);

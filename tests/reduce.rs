@@ -678,6 +678,43 @@ fn a_mesh_is_made_without_the_outliers() {
 }
 
 #[test]
+fn a_few_far_points_cost_no_detail() {
+    let scan = Shape::Torus.sample(9000, 1e-3, 5);
+    let without = run(&Cloud::from_f64(&scan).unwrap(), &count(3000));
+    for far in [1e1, 1e3, 1e5, 1e9, 1e14] {
+        let mut positions = scan.clone();
+        positions.extend([far, 0.0, 0.0, 0.0, -far, 0.3 * far, far, far, far]);
+        let cloud = Cloud::from_f64(&positions).unwrap();
+        let r = run(&cloud, &count(3000));
+        assert_sound(&cloud, &r);
+        let positions = r.cloud.positions_f64();
+        let near: Vec<DVec3> = points(&positions).filter(|p| p.length() < 2.0).collect();
+        assert_eq!(
+            near.len(),
+            3000 - 3,
+            "{far}: each far point stands for itself"
+        );
+        for p in points(&positions).filter(|p| p.length() >= 2.0) {
+            assert!(
+                (p.abs().max_element() / far - 1.0).abs() < 1e-6,
+                "{far}: {p}"
+            );
+        }
+        let rms = |points: &[DVec3]| {
+            let squares = points.iter().map(|p| Shape::Torus.distance(*p).powi(2));
+            (squares.sum::<f64>() / points.len() as f64).sqrt()
+        };
+        let alone: Vec<DVec3> = points(&without.cloud.positions_f64()).collect();
+        assert!(
+            rms(&near) < 1.2 * rms(&alone),
+            "{far}: {} {}",
+            rms(&near),
+            rms(&alone)
+        );
+    }
+}
+
+#[test]
 fn open_borders_stay_where_they_are() {
     // A wavy square sheet as a depth camera would see it, noise included.
     let side = 120;
