@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// The bounding box is that of the others where a few points are this many diagonals away: single precision would leave too
 /// little for what is near. Farther than the end of the range nothing can be told of them.
-const FAR_OUT: Range<f64> = 1e3..1e15;
+const FAR_OUT: Range<f64> = 10.0..1e15;
 /// Those are less than this share of the points, on any side.
 const A_FEW: f64 = 0.02;
 /// Points that tell where most are.

@@ -163,7 +163,11 @@ pub fn reconstruct(
     let how = extract_params(&sites, params);
     let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
 
-    reduced.cloud.normals = Some(in_input_order(&sites.tree, &signs.normals));
+    let normals = reduced.cloud.normals.get_or_insert_default();
+    normals.resize(reduced.cloud.points.len(), Vec3::ZERO);
+    for (&i, &normal) in sites.tree.order.iter().zip(&signs.normals) {
+        normals[i as usize] = normal;
+    }
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
     let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
@@ -403,7 +407,16 @@ fn sites(
     orient: bool,
     progress: &mut dyn Progress,
 ) -> Result<Sites> {
-    let tree = Octree::build(&reduced.cloud.points);
+    // Points that the unit frame leaves out are no part of a surface.
+    let points = &reduced.cloud.points;
+    let framed: Vec<u32> = (0..points.len() as u32)
+        .filter(|&i| points[i as usize].abs().max_element() <= 1.0)
+        .collect();
+    let positions: Vec<Vec3> = framed.iter().map(|&i| points[i as usize]).collect();
+    let mut tree = Octree::build(&positions);
+    for i in &mut tree.order {
+        *i = framed[*i as usize];
+    }
     let features = Features::measure(&tree, progress)?;
     let normals = match &reduced.cloud.normals {
         Some(normals) => tree.order.iter().map(|&i| normals[i as usize]).collect(),
@@ -429,15 +442,6 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
         boundary: params.boundary,
         sharp: params.sharp,
     }
-}
-
-/// Values in a tree's order back in the order of its input.
-fn in_input_order(tree: &Octree, values: &[Vec3]) -> Vec<Vec3> {
-    let mut out = vec![Vec3::ZERO; values.len()];
-    for (&i, &v) in tree.order.iter().zip(values) {
-        out[i as usize] = v;
-    }
-    out
 }
 
 fn reduce_report(

@@ -226,6 +226,29 @@ fn open_sheets_stay_open_and_close_when_asked() {
 }
 
 #[test]
+fn a_few_far_points_leave_the_surface_as_it_is() {
+    let scan = Shape::Torus.sample(6000, 1e-3, 5);
+    for far in [1e2, 1e5, 1e9] {
+        let mut positions = scan.clone();
+        positions.extend([far, 0.0, 0.0, 0.0, -far, 0.3 * far, far, far, far]);
+        let s = surface(&positions, &SurfaceParams::default()).unwrap();
+        assert_eq!(
+            (s.report.components, s.report.boundary_edges),
+            (1, 0),
+            "{far}"
+        );
+        let vertices = s.positions_f64();
+        let worst = points(&vertices)
+            .map(|p| Shape::Torus.distance(p).abs())
+            .fold(0.0, f64::max);
+        assert!(worst < 0.05, "{far}: {worst}");
+        assert!(
+            s.cloud.reduced.cloud.normals.as_ref().unwrap().len() == s.report.reduce.output_points
+        );
+    }
+}
+
+#[test]
 fn a_small_hole_is_closed() {
     let holed: Vec<f64> = points(&Shape::Sphere.sample(8000, 0.0, 8))
         .filter(|p| p.z < 0.95)
