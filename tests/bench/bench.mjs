@@ -1,4 +1,4 @@
-// `cargo xtask bench [tables] [peer] [threads]`: what Pointweave costs, on generated scans, in this process.
+// `cargo xtask bench [tables] [peer] [threads]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
@@ -6,8 +6,14 @@
 //
 // Times are medians of several runs; machines differ, so compare ratios.
 
+import { existsSync, readFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createEngine } from 'pointweave';
+
+const HERE = dirname(fileURLToPath(import.meta.url));
+const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(HERE, '../../../shared');
 
 const RUNS = 3;
 
@@ -75,20 +81,25 @@ async function peer() {
   await MeshoptSimplifier.ready;
   MeshoptSimplifier.useExperimentalFeatures = true;
   const engine = await createEngine({ threads: 1 });
-  const scan = await engine.sample('pig');
-  const points = scan.positions.length / 3;
+  const armadillo = join(SHARED, 'bench/clouds/armadillo-uniform-0.001.f32');
+  const shared = existsSync(armadillo);
+  const positions = shared
+    ? new Float32Array(new Uint8Array(readFileSync(armadillo)).buffer)
+    : await toyPig(PAPER.pig.original);
+  const points = positions.length / 3;
   const rows = [];
   for (const ratio of [2, 3, 10]) {
     const count = Math.floor(points / ratio);
-    const ours = await repeat(() => engine.reduce({ positions: scan.positions }, { target: { count } }));
-    const theirs = await repeat(async () => MeshoptSimplifier.simplifyPoints(scan.positions, 3, count));
+    const ours = await repeat(() => engine.reduce({ positions }, { target: { count } }));
+    const theirs = await repeat(async () => MeshoptSimplifier.simplifyPoints(positions, 3, count));
     rows.push([
       `1/${ratio}`, ours.result.positions.length / 3, theirs.result.length, ours.ms.toFixed(0), theirs.ms.toFixed(0),
       (ours.ms / theirs.ms).toFixed(1), (points / ours.ms / 1000).toFixed(2),
     ]);
   }
   await engine.dispose();
-  print(`Reduction of ${points} points beside meshoptimizer's simplifyPoints (ms, one thread)`, [
+  const name = shared ? 'the Armadillo' : 'the toy pig';
+  print(`Reduction of ${name}, ${points} points, beside meshoptimizer's simplifyPoints (single build, ms, one thread)`, [
     ['keep', 'points', "peer's", 'ms', "peer's", 'ratio', 'M points/s'], ...rows,
   ]);
 }
@@ -122,6 +133,14 @@ async function repeat(job) {
   }
   times.sort((a, b) => a - b);
   return { result, ms: times[RUNS >> 1] };
+}
+
+/** Positions of a scan of the pig, made by an engine that is gone afterwards. */
+async function toyPig(count) {
+  const engine = await createEngine({ threads: 1 });
+  const { positions } = await engine.sample('pig', { count, seed: 0 });
+  await engine.dispose();
+  return positions;
 }
 
 /** Our seconds, and the paper's. */
