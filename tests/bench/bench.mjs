@@ -1,6 +1,7 @@
-// `cargo xtask bench [tables] [peer] [threads]`: what Pointweave costs, in this process.
+// `cargo xtask bench [tables] [growth] [peer] [threads]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
+//   growth   the reduction of ten thousand to ten million points: time and memory a point
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
 //   threads  one thread beside two, the same bytes
 //
@@ -23,7 +24,10 @@ const PAPER = {
   pig: { original: 171_875, reduced: 85_674, reduce: 4.84, normals: [13.76, 6.31], surface: [10.14, 5.73] },
 };
 
-const benches = { tables, peer, threads };
+/** `growth`: points, and how often each size runs. */
+const SIZES = [[1e4, 9], [1e5, 5], [1e6, 1], [1e7, 1]];
+
+const benches = { tables, growth, peer, threads };
 const asked = process.argv.slice(2);
 const unknown = asked.find((name) => !(name in benches));
 if (unknown !== undefined) {
@@ -77,6 +81,38 @@ async function tables() {
   ]);
 }
 
+async function growth() {
+  // The noise of the pig stays while its points come closer, and points that are noisier for their spacing ask more
+  // neighbours. The torus is alike at every size.
+  const clouds = { pig: toyPig, torus: bumpyTorus };
+  const rows = [];
+  try {
+    for (const [name, make] of Object.entries(clouds)) {
+      const smallest = await make(SIZES[0][0]);
+      let unit;
+      for (const [points, runs] of SIZES) {
+        const positions = await make(points);
+        const engine = await createEngine({ threads: 1 }); // its own: wasm memory never shrinks
+        const reduce = (positions) => engine.reduce({ positions }, { target: { ratio: 1 / 3 } });
+        const { result, ms } = await repeat(() => reduce(positions), { runs, first: () => reduce(smallest) });
+        await engine.dispose();
+        const perPoint = (ms * 1000) / points;
+        const perLog = perPoint / Math.log2(points);
+        unit ??= perLog;
+        rows.push([
+          name, points, runs, ms.toFixed(0), perPoint.toFixed(2), perLog.toFixed(3), (perLog / unit).toFixed(2),
+          (result.report.peakMemoryBytes / points).toFixed(0),
+        ]);
+      }
+    }
+  } finally {
+    print('Growth of the reduction to 1/3 (single build, one thread; 1 or less beside the first: within n log n)', [
+      ['cloud', 'points', 'runs', 'ms', 'µs a point', 'µs / (point log2 n)', 'beside the first', 'bytes a point'],
+      ...rows,
+    ]);
+  }
+}
+
 async function peer() {
   await MeshoptSimplifier.ready;
   MeshoptSimplifier.useExperimentalFeatures = true;
@@ -123,16 +159,17 @@ async function threads() {
 }
 
 /** The last result and the median time of some runs after a first one. */
-async function repeat(job) {
-  let result = await job();
+async function repeat(job, { runs = RUNS, first = job } = {}) {
+  await first();
+  let result;
   const times = [];
-  for (let run = 0; run < RUNS; run++) {
+  for (let run = 0; run < runs; run++) {
     const start = performance.now();
     result = await job();
     times.push(performance.now() - start);
   }
   times.sort((a, b) => a - b);
-  return { result, ms: times[RUNS >> 1] };
+  return { result, ms: times[runs >> 1] };
 }
 
 /** Positions of a scan of the pig, made by an engine that is gone afterwards. */
@@ -141,6 +178,32 @@ async function toyPig(count) {
   const { positions } = await engine.sample('pig', { count, seed: 0 });
   await engine.dispose();
   return positions;
+}
+
+/** Random points of a torus with bumps, noise a fifth of their spacing. */
+function bumpyTorus(count) {
+  const random = mulberry32(1);
+  const [ring, tube, turn] = [1, 0.3, 2 * Math.PI];
+  const noise = 0.2 * Math.sqrt((turn * turn * ring * tube) / count);
+  const positions = new Float32Array(3 * count);
+  for (let i = 0; i < positions.length; i += 3) {
+    const [u, v] = [turn * random(), turn * random()];
+    const across = Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(turn * random()); // Box and Muller's normal deviate
+    const radius = tube * (1 + 0.1 * Math.sin(7 * u) * Math.sin(5 * v)) + noise * across;
+    const out = ring + radius * Math.cos(v);
+    positions.set([out * Math.cos(u), out * Math.sin(u), radius * Math.sin(v)], i);
+  }
+  return positions;
+}
+
+/** Tommy Ettinger's generator: numbers in [0, 1). */
+function mulberry32(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t ^= t + Math.imul(t ^ (t >>> 7), 61 | t);
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
 }
 
 /** Our seconds, and the paper's. */
