@@ -1,12 +1,14 @@
-// `cargo xtask bench [tables] [growth] [peer] [threads]`: what Pointweave costs, in this process.
+// `cargo xtask bench [tables] [growth] [fcm] [peer] [threads]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
 //   growth   the reduction of ten thousand to ten million points: time and memory a point
+//   fcm      our clustering beside scikit-fuzzy's
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
 //   threads  one thread beside two, the same bytes
 //
 // Times are medians of several runs; machines differ, so compare ratios.
 
+import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -27,7 +29,14 @@ const PAPER = {
 /** `growth`: points, and how often each size runs. */
 const SIZES = [[1e4, 9], [1e5, 5], [1e6, 1], [1e7, 1]];
 
-const benches = { tables, growth, peer, threads };
+/** `fcm`: the same for both sides. */
+const FCM = { ratio: 1 / 8, cellPoints: 256, fuzzifier: 2, epsilon: 1e-3, maxIterations: 100 };
+/** An epsilon that no sweep meets: each side does all of them. */
+const NEVER = Number.MIN_VALUE;
+/** Cells on which scikit-fuzzy is timed. */
+const TIMED_CELLS = 40;
+
+const benches = { tables, growth, fcm, peer, threads };
 const asked = process.argv.slice(2);
 const unknown = asked.find((name) => !(name in benches));
 if (unknown !== undefined) {
@@ -111,6 +120,47 @@ async function growth() {
       ...rows,
     ]);
   }
+}
+
+async function fcm() {
+  const engine = await createEngine({ threads: 1 });
+  const pig = await toyPig(PAPER.pig.original);
+  const cells = cellsApart(pig, FCM.cellPoints);
+  const count = cells.length / 3 / FCM.cellPoints;
+  const { ratio, ...own } = FCM;
+  const settled = skfuzzy(cells, FCM.epsilon);
+  const all = skfuzzy(cells, 0);
+  const rows = [];
+  for (const [name, positions, options, theirs] of [
+    ['adaptive, its own settings', pig, {}, settled],
+    ['adaptive', pig, own, settled],
+    ['paper', pig, { ...own, method: 'paper' }, settled],
+    ["paper, scikit-fuzzy's cells", cells, { ...own, method: 'paper' }, settled],
+    ["paper, scikit-fuzzy's cells, all sweeps", cells, { ...own, method: 'paper', epsilon: NEVER }, all],
+  ]) {
+    const reduce = () => engine.reduce({ positions }, { target: { ratio }, ...options });
+    const { result: { report }, ms } = await repeat(reduce);
+    const [clustering, job] = [report.ms.cluster / 1000, ms / 1000];
+    const seconds = theirs && (theirs.seconds / theirs.cells) * count;
+    rows.push([
+      name, report.cells, (report.inputPoints / report.cells).toFixed(0), clustering.toFixed(2), job.toFixed(2),
+      ...(theirs
+        ? [seconds.toFixed(2), (seconds / clustering).toFixed(1), (seconds / job).toFixed(1)]
+        : ['–', '–', '–']),
+    ]);
+  }
+  await engine.dispose();
+  print(
+    `Fuzzy c-means of the toy pig, ${pig.length / 3} points to 1/8 (single build, seconds on one thread; `
+      + `m = ${FCM.fuzzifier}, ε = ${FCM.epsilon}, at most ${FCM.maxIterations} sweeps)`,
+    [['method', 'cells', 'points a cell', 'clustering', 'whole job', 'scikit-fuzzy', '/ clustering', '/ job'], ...rows],
+  );
+  console.log(settled
+    ? `  scikit-fuzzy ${settled.version}, in every row: ${settled.cells} cells of ${FCM.cellPoints} points and `
+      + `${FCM.cellPoints * ratio} clusters, scaled up to ${count}.\n`
+      + `  It stops (after ${settled.sweeps.toFixed(0)} sweeps) when the norm of all changes of U is under ε, `
+      + '`paper` when each is; ε of `adaptive` is a movement of centres.'
+    : '  scikit-fuzzy was not measured: `cargo xtask bench fcm` says why.');
 }
 
 async function peer() {
@@ -204,6 +254,85 @@ function mulberry32(seed) {
     t ^= t + Math.imul(t ^ (t >>> 7), 61 | t);
     return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
   };
+}
+
+/**
+ * Cells of `size` consecutive points in Morton order, drawn apart along x so that each is a sub-domain of the octree by
+ * itself. There are a power of two of slots, the first and the last are taken, and a cell fills a quarter of its own:
+ * every node of that level then holds one. Odd slots lie aside, for the octree's middle planes to pass between. Cells are
+ * moved, scaled and turned, their longest side along x; clustering minds none of it.
+ */
+function cellsApart(positions, size) {
+  const order = mortonOrder(positions);
+  const count = Math.floor(order.length / size);
+  const slots = 2 ** Math.ceil(Math.log2(count));
+  const apart = new Float32Array(3 * count * size);
+  for (let cell = 0; cell < count; cell++) {
+    const slot = Math.floor((cell * (slots - 1)) / (count - 1));
+    const members = order.subarray(cell * size, (cell + 1) * size);
+    const { low, sides } = box(positions, members);
+    const longest = Math.max(...sides);
+    const turn = sides.indexOf(longest);
+    members.forEach((k, i) => {
+      for (let axis = 0; axis < 3; axis++) {
+        const from = (axis + turn) % 3;
+        const inside = (positions[3 * k + from] - low[from]) / longest;
+        apart[3 * (cell * size + i) + axis] = (axis === 0 ? slot : slot % 2) + inside / 4;
+      }
+    });
+  }
+  return apart;
+}
+
+/** Indices of points along a Morton curve of 10 bits an axis. */
+function mortonOrder(positions) {
+  const indices = Uint32Array.from({ length: positions.length / 3 }, (_, k) => k);
+  const { low, sides } = box(positions, indices);
+  const scale = 1023 / Math.max(...sides);
+  const keys = Array.from(indices, (k) => {
+    const cell = low.map((x, axis) => (positions[3 * k + axis] - x) * scale);
+    let key = 0;
+    for (let bit = 9; bit >= 0; bit--) {
+      for (const c of cell) {
+        key = 2 * key + ((c >> bit) & 1);
+      }
+    }
+    return key;
+  });
+  return indices.sort((a, b) => keys[a] - keys[b]);
+}
+
+/** Lower corner and sides of the bounding box of some points. */
+function box(positions, indices) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const k of indices) {
+    for (let axis = 0; axis < 3; axis++) {
+      const x = positions[3 * k + axis];
+      low[axis] = Math.min(low[axis], x);
+      high[axis] = Math.max(high[axis], x);
+    }
+  }
+  return { low, sides: low.map((x, axis) => high[axis] - x) };
+}
+
+/** What fcm_skfuzzy.py measures on some cells, with one thread; `undefined` where xtask found no Python for it. */
+function skfuzzy(cells, error) {
+  const python = process.env.SKFUZZY_PYTHON;
+  if (!python) {
+    return undefined;
+  }
+  const { cellPoints, ratio, fuzzifier, maxIterations } = FCM;
+  const numbers = [cellPoints, cellPoints * ratio, fuzzifier, error, maxIterations, TIMED_CELLS].map(String);
+  const script = join(HERE, 'fcm_skfuzzy.py');
+  const { stdout, status, error: failure } = spawnSync(python, [script, ...numbers], {
+    input: new Uint8Array(cells.buffer),
+    stdio: ['pipe', 'pipe', 'inherit'],
+    env: { ...process.env, OMP_NUM_THREADS: '1', OPENBLAS_NUM_THREADS: '1' },
+  });
+  if (status !== 0) {
+    throw failure ?? new Error(`fcm_skfuzzy.py failed (${status}); its error is above`);
+  }
+  return JSON.parse(stdout.toString());
 }
 
 /** Our seconds, and the paper's. */

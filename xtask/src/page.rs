@@ -48,5 +48,13 @@ pub fn bench(arguments: &[String]) -> Result<()> {
     setup::npm(&root().join("tests"))?;
     let mut bench = command("node");
     bench.arg("tests/bench/bench.mjs").args(arguments);
+    if arguments.is_empty() || arguments.iter().any(|name| name == "fcm") {
+        match setup::skfuzzy() {
+            Ok(python) => {
+                bench.env("SKFUZZY_PYTHON", python);
+            }
+            Err(sentence) => say(&format!("{sentence}; `fcm` leaves scikit-fuzzy out")),
+        }
+    }
     run(&mut bench, "a benchmark failed; its error is above")
 }

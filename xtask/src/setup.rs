@@ -21,6 +21,9 @@ pub fn everything() -> Result<()> {
     chromedriver()?;
     firefox()?;
     geckodriver()?;
+    if let Err(sentence) = skfuzzy() {
+        say(&format!("{sentence}; only a benchmark wants it"));
+    }
     Ok(())
 }
 
@@ -106,34 +109,79 @@ pub fn wasm_tools() -> Result<PathBuf> {
 /// `npm ci` in a folder that has a lock file, unless what it would install is there already.
 pub fn npm(folder: &Path) -> Result<()> {
     let lock = folder.join("package-lock.json");
-    let Ok(wanted) = fs::read(&lock) else {
+    if !lock.is_file() {
         return Ok(());
-    };
-    // The lock that was last installed in full.
+    }
     let stamp = folder.join("node_modules/.installed-lock.json");
-    if fs::read(&stamp).is_ok_and(|installed| installed == wanted) {
+    unless_installed(&lock, &stamp, || {
+        if find("node").is_none() || find("npm").is_none() {
+            return Err(
+                "Node and npm are missing; install Node 20 or newer from nodejs.org".into(),
+            );
+        }
+        say(&format!(
+            "installing what {} locks, with npm",
+            lock.display()
+        ));
+        let mut npm = command("npm");
+        npm.current_dir(folder)
+            .args(["ci", "--no-audit", "--no-fund", "--loglevel=error"])
+            .stdout(std::io::stderr());
+        run(
+            &mut npm,
+            &format!(
+                "`npm ci` failed in {}; is the network there?",
+                folder.display()
+            ),
+        )
+    })
+}
+
+/// A Python with scikit-fuzzy, in a virtual environment in target/.
+pub fn skfuzzy() -> Result<PathBuf> {
+    let requirements = root().join("tests/bench/requirements.txt");
+    let environment = root().join("target/skfuzzy");
+    let python = environment.join(if cfg!(windows) {
+        "Scripts/python.exe"
+    } else {
+        "bin/python"
+    });
+    let stamp = environment.join("installed-requirements.txt");
+    unless_installed(&requirements, &stamp, || {
+        let system = find("python3")
+            .or_else(|| find("python"))
+            .ok_or("Python is missing; install Python 3.11 or newer with venv and pip")?;
+        say(&format!(
+            "installing scikit-fuzzy into {} with pip",
+            environment.display()
+        ));
+        let mut venv = command(system);
+        venv.args(["-m", "venv", "--clear"]).arg(&environment);
+        run(
+            venv.stdout(std::io::stderr()),
+            "Python's venv or pip is missing; install both (Debian's package is python3-venv)",
+        )?;
+        let mut pip = command(&python);
+        pip.args(["-m", "pip", "install", "--quiet", "--requirement"])
+            .arg(&requirements);
+        run(
+            pip.stdout(std::io::stderr()),
+            "pip failed; is the network there, and Python 3.11 or newer?",
+        )
+    })?;
+    Ok(python)
+}
+
+/// Installs what a lock file names, unless `stamp`, the lock that was last installed in full, is the same.
+fn unless_installed(lock: &Path, stamp: &Path, install: impl FnOnce() -> Result<()>) -> Result<()> {
+    let wanted =
+        fs::read(lock).map_err(|error| format!("{} cannot be read: {error}", lock.display()))?;
+    if fs::read(stamp).is_ok_and(|installed| installed == wanted) {
         return Ok(());
     }
-    if find("node").is_none() || find("npm").is_none() {
-        return Err("Node and npm are missing; install Node 20 or newer from nodejs.org".into());
-    }
-    say(&format!(
-        "installing what {} locks, with npm",
-        lock.display()
-    ));
-    let mut npm = command("npm");
-    npm.current_dir(folder)
-        .args(["ci", "--no-audit", "--no-fund", "--loglevel=error"])
-        .stdout(std::io::stderr());
-    run(
-        &mut npm,
-        &format!(
-            "`npm ci` failed in {}; is the network there?",
-            folder.display()
-        ),
-    )?;
-    fs::create_dir_all(folder.join("node_modules"))
-        .and_then(|()| fs::write(&stamp, wanted))
+    install()?;
+    fs::create_dir_all(stamp.parent().expect("a folder holds it"))
+        .and_then(|()| fs::write(stamp, wanted))
         .map_err(|error| format!("{} cannot be written: {error}", stamp.display()))
 }
 
@@ -236,4 +284,25 @@ fn found_or_apt(
     find().ok_or_else(|| {
         format!("{what} is not where it was expected after its installation; {otherwise}")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_lock_that_was_not_installed_in_full_is_installed() {
+        let folder = env::temp_dir().join(format!("pointweave-setup-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (lock, stamp) = (folder.join("lock"), folder.join("installed/lock"));
+        fs::write(&lock, "one").unwrap();
+        let refused = || Err("refused".into());
+        assert!(unless_installed(&lock, &stamp, refused).is_err());
+        assert!(!stamp.exists());
+        assert_eq!(unless_installed(&lock, &stamp, || Ok(())), Ok(()));
+        assert_eq!(unless_installed(&lock, &stamp, refused), Ok(()));
+        fs::write(&lock, "two").unwrap();
+        assert!(unless_installed(&lock, &stamp, refused).is_err());
+        fs::remove_dir_all(&folder).unwrap();
+    }
 }
