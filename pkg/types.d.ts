@@ -75,7 +75,7 @@ export interface ReduceOptions {
    * centre moves by more than this share of the wanted spacing, default 0.01.
    */
   epsilon?: number;
-  /** At least 1. Default 8 (`'adaptive'`), 100 (`'paper'`). */
+  /** At least 1. Default 5 (`'adaptive'`), 100 (`'paper'`). */
   maxIterations?: number;
   /** The norm-inducing matrix A of eq. 1, for `'paper'`. Default `'euclidean'`. */
   norm?: 'euclidean' | 'diagonal' | 'mahalanobis';

@@ -24,6 +24,10 @@ use crate::progress::{Progress, Stage};
 /// within about 0.7 spacings; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
 const REACH: f32 = 1.5;
 
+/// How far a centre goes, in steps of eq. 2 (over-relaxation): five sweeps are then as even and as near to the surface as eight
+/// of step 1, on three models that the bench does not use.
+const RELAXATION: f64 = 1.7;
+
 /// Added to squared distances, in units of the squared spacing: keeps ratios finite at distance zero.
 const TINY: f32 = 1e-6;
 
@@ -309,7 +313,7 @@ fn sweep<P: Power<f32> + Send + Sync>(
         if w > 0.0 {
             let step = dx / w;
             moved = moved.max(step.length() * w / unit);
-            *center = (center.as_dvec3() + step).as_vec3();
+            *center = (center.as_dvec3() + RELAXATION * step).as_vec3();
         }
     }
     moved

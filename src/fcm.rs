@@ -243,7 +243,11 @@ impl Fcm {
                 for l in 0..LANES {
                     let (dx, dy, dz) = (x[l] - v.x, y[l] - v.y, z[l] - v.z);
                     distance[l] = dx * dx + dy * dy + dz * dz;
-                    nearest[l] = nearest[l].min(distance[l]);
+                    nearest[l] = if distance[l] < nearest[l] {
+                        distance[l]
+                    } else {
+                        nearest[l]
+                    };
                 }
             }
             let mut total = [0.0; LANES];
@@ -256,18 +260,15 @@ impl Fcm {
             if nearest.contains(&0.0) {
                 self.share_zero_distance(&nearest, &mut total);
             }
+            let mut most = [0.0; LANES];
+            let inverse = total.map(|total| 1.0 / total);
             for (i, sums) in self.sums.iter_mut().enumerate() {
                 let (share, distance) = (&self.share[i], &self.distance[i]);
                 let row = &mut self.u[i * stride + block..][..LANES];
                 for l in 0..LANES {
-                    let u = share[l] / total[l];
-                    // Padding has weight 0 and no say in the change.
-                    let moved = if weight[l] > 0.0 {
-                        (u - row[l]).abs()
-                    } else {
-                        0.0
-                    };
-                    change[l] = change[l].max(moved);
+                    let u = share[l] * inverse[l];
+                    let moved = (u - row[l]).abs();
+                    most[l] = if moved > most[l] { moved } else { most[l] };
                     row[l] = u;
                     let w = weight[l] * power.raise(u);
                     objective[l] += w * distance[l];
@@ -275,6 +276,12 @@ impl Fcm {
                     sums[1][l] += w * x[l];
                     sums[2][l] += w * y[l];
                     sums[3][l] += w * z[l];
+                }
+            }
+            // Padding has weight 0 and no say in the change.
+            for l in 0..LANES {
+                if weight[l] > 0.0 {
+                    change[l] = change[l].max(most[l]);
                 }
             }
         }

@@ -102,7 +102,7 @@ pub struct ReduceParams {
     /// ε of eq. 6: stop when no membership changes by more, > 0. Default: 0.01 of the wanted spacing as centre movement
     /// (`adaptive`), 0.001 (`paper`).
     pub epsilon: Option<f64>,
-    /// At most this many iterations of steps (b) and (c), at least 1. Default 8 (`adaptive`), 100 (`paper`).
+    /// At most this many iterations of steps (b) and (c), at least 1. Default 5 (`adaptive`), 100 (`paper`).
     pub max_iterations: Option<usize>,
     /// A of eq. 1, used by `paper`; `adaptive` has a matrix of its own for each point. Default: euclidean.
     pub norm: Norm,

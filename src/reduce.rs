@@ -312,7 +312,7 @@ fn adaptive(
     let settling = Settling {
         fuzzifier: fuzzifier(params),
         epsilon: params.epsilon.unwrap_or(1e-2),
-        max_iterations: params.max_iterations.unwrap_or(8),
+        max_iterations: params.max_iterations.unwrap_or(5),
     };
     let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
     Ok(Clustering {
