@@ -17,6 +17,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::features::Features;
+use crate::neighborhood::{Block, CELL, Neighborhood, bounds, even_reach};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 
@@ -38,6 +39,8 @@ const SMALLEST: f32 = 1e-6;
 const GROUP: usize = 12;
 /// Groups that limit each other's spacing: a ring around each.
 const RING: usize = 12;
+/// A cell of groups gathers this many times as far as an even patch over its box would need.
+const MARGIN: f32 = 1.6;
 
 /// The wanted spacing at every point, in the octree's order.
 #[derive(Debug, Clone)]
@@ -252,16 +255,47 @@ impl Groups {
     }
 }
 
-/// The groups nearest to each group, itself first.
+/// Memory of one worker.
+#[derive(Default)]
+struct Around {
+    cell: Neighborhood,
+    own: Neighborhood,
+    found: Vec<Neighbor>,
+}
+
+/// The groups around each group, about [`RING`], itself among them.
 fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
     let tree = Octree::build(centers);
-    let mut rings = vec![Vec::new(); centers.len()];
-    let found = par::map(centers.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
-        tree.knn(tree.points[i], RING, found);
-        let ring = found.iter().map(|n| tree.order[n.index as usize]);
-        ring.collect::<Vec<u32>>()
+    let cells = tree.cut(|node| node.range().len() <= CELL);
+    let found = par::map(cells.len(), Around::default, |c, around| {
+        let cell = cells[c].clone();
+        let corners = bounds(&tree.points[cell.clone()]);
+        let reach = MARGIN * even_reach(corners, cell.len(), RING);
+        let together = around.cell.gather(&tree, corners, reach);
+        let mut rings = Vec::with_capacity(cell.len());
+        for block in Block::all(&tree.points, cell) {
+            let middle = tree.points[block.middle()];
+            let mut radius = around.cell.kth_distance(middle, RING);
+            let mut hood = &mut around.cell;
+            if !together || radius > reach {
+                tree.knn(middle, RING, &mut around.found);
+                radius = around.found.last().map_or(0.0, |n| n.distance2).sqrt();
+                hood = &mut around.own;
+                hood.gather_box(&tree, (block.lo, block.hi), radius);
+            }
+            hood.narrow(&block, radius);
+            rings.extend(block.range.clone().map(|i| {
+                let near = hood.near().filter(|(_, at)| {
+                    let at = Vec3::from_array(at.map(|x| x.0[0]));
+                    at.distance_squared(tree.points[i]) <= radius * radius
+                });
+                near.map(|(j, _)| tree.order[j]).collect::<Vec<u32>>()
+            }));
+        }
+        rings
     });
-    for (&group, ring) in tree.order.iter().zip(found) {
+    let mut rings = vec![Vec::new(); centers.len()];
+    for (&group, ring) in tree.order.iter().zip(found.into_iter().flatten()) {
         rings[group as usize] = ring;
     }
     rings

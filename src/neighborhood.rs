@@ -70,6 +70,15 @@ pub fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
         .fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)))
 }
 
+/// Distance to the k-th neighbour if the points were spread evenly over the two longer sides of their box.
+pub fn even_reach((lo, hi): (Vec3, Vec3), points: usize, k: usize) -> f32 {
+    let size = hi - lo;
+    let shortest = size.min_element();
+    let area = size.x * size.y + size.y * size.z + size.z * size.x
+        - shortest * (size.x + size.y + size.z - shortest);
+    (area / points as f32 * k as f32 / std::f32::consts::PI).sqrt()
+}
+
 /// What lies around a cell, and which of it around the block at hand. The memory of one worker.
 #[derive(Debug, Default)]
 pub struct Neighborhood {
@@ -106,16 +115,21 @@ impl Neighborhood {
 
     /// Gathers the points within `reach` of one point, however many.
     pub fn gather_at(&mut self, source: &Octree, p: Vec3, reach: f32) {
+        self.gather_box(source, (p, p), reach);
+        self.near.clear();
+        self.near.extend(0..self.around.len() as u32);
+    }
+
+    /// [`Neighborhood::gather`], however many there are.
+    pub fn gather_box(&mut self, source: &Octree, (lo, hi): (Vec3, Vec3), reach: f32) {
         self.around.clear();
         self.reach = reach;
         let around = &mut self.around;
-        source.visit_box(p - reach, p + reach, |range| {
+        source.visit_box(lo - reach, hi + reach, |range| {
             around.extend(range.map(|i| i as u32));
             true
         });
         self.load(source);
-        self.near.clear();
-        self.near.extend(0..self.around.len() as u32);
     }
 
     fn load(&mut self, source: &Octree) {

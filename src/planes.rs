@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::lanes::{LANES, Lanes};
 use crate::linalg::least_axis;
-use crate::neighborhood::{Block, Neighborhood, bounds};
+use crate::neighborhood::{Block, Neighborhood, bounds, even_reach};
 use crate::octree::{Neighbor, Octree};
 
 /// R, in distances to the k-th neighbour of a block's middle point: the weights then amount to those of 0.8 k equal ones. On
@@ -82,15 +82,6 @@ impl Planes {
             .next()
             .unwrap_or_default()
     }
-}
-
-/// Distance to the k-th neighbour if the points were spread evenly over the two longer sides of their box.
-fn even_reach((lo, hi): (Vec3, Vec3), points: usize, k: usize) -> f32 {
-    let size = hi - lo;
-    let shortest = size.min_element();
-    let area = size.x * size.y + size.y * size.z + size.z * size.x
-        - shortest * (size.x + size.y + size.z - shortest);
-    (area / points as f32 * k as f32 / std::f32::consts::PI).sqrt()
 }
 
 /// The planes of a block; those of points with few neighbours have no spacing.
