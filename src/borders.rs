@@ -5,14 +5,11 @@ use glam::Vec3;
 
 use crate::clusters::Shares;
 use crate::features::Features;
-use crate::lanes::Lanes;
-use crate::neighborhood::{Block, CELL, Neighborhood, bounds};
 use crate::octree::Octree;
 use crate::par;
 use crate::placement::{Members, Placed};
+use crate::surroundings::Around;
 
-/// Radius within which neighbours balance each other, in spacings: the first ring of a lattice of centres.
-const RING: f32 = 1.7;
 /// Distance of the weighted mean of a centre's neighbours from it, in radii, from which it may be at a border: a hexagonal
 /// lattice has 0.16 along a straight border, less where the rows interlock.
 const UNBALANCED: f32 = 0.06;
@@ -27,58 +24,35 @@ pub(crate) fn restore(
     tree: &Octree,
     (points, features): (&[Vec3], &Features),
     (shares, members): (&[Shares], &Members),
+    around: &[Around],
     placed: &mut [Placed],
 ) {
     let own = |i: usize| {
         let all = members.of(i).iter().map(|&(k, _)| k as usize);
         all.filter(move |&k| shares[k].center[0] as usize == i)
     };
-    let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
-    let index = Octree::build(&positions);
-    let cells = index.cut(|node| node.range().len() <= CELL);
-    let moved = par::map(cells.len(), Neighborhood::default, |c, hood| {
-        let spacing = |i: usize| placed[index.order[i] as usize].spacing;
-        let cell = cells[c].clone();
-        let widest = RING * cell.clone().map(spacing).fold(0.0, f32::max);
-        let together = hood.gather(&index, bounds(&index.points[cell.clone()]), widest);
-        let mut moved = Vec::new();
-        for block in Block::all(&index.points, cell).filter(|_| together) {
-            let radius = Lanes::splat(RING) * block.lanes(spacing);
-            hood.narrow(&block, radius.0.into_iter().fold(0.0, f32::max));
-            let mean = balance(&block, radius, hood);
-            for (l, i) in block.range.clone().enumerate() {
-                let i = index.order[i] as usize;
-                let outward = -Vec3::from_array(mean.map(|m| m.0[l]));
-                if outward.length() > UNBALANCED
-                    && let Some(position) =
-                        outermost(tree, (points, features), own(i), &placed[i], outward)
-                {
-                    moved.push((i, position));
-                }
-            }
-        }
-        moved
-    });
-    for (i, position) in moved.into_iter().flatten() {
-        placed[i].position = position;
-    }
-}
-
-/// Weighted mean of the neighbours of each lane, from it, in radii.
-fn balance(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Lanes; 3] {
-    let one = Lanes::splat(1.0);
-    let scale = one / radius.max(Lanes::splat(f32::MIN_POSITIVE));
-    let mut sums = [Lanes::ZERO; 4];
-    for (_, at) in hood.near() {
-        let [x, y, z] = [0, 1, 2].map(|axis| (at[axis] - block.at[axis]) * scale);
-        let root = (one - (x * x + y * y + z * z)).max(Lanes::ZERO);
-        let w = root * root;
-        for (sum, term) in sums.iter_mut().zip([w * x, w * y, w * z, w]) {
-            *sum += term;
+    let unbalanced: Vec<usize> = (0..placed.len())
+        .filter(|&i| around[i].mean.length() > UNBALANCED)
+        .collect();
+    let moved = par::map(
+        unbalanced.len(),
+        || (),
+        |j, ()| {
+            let i = unbalanced[j];
+            outermost(
+                tree,
+                (points, features),
+                own(i),
+                &placed[i],
+                -around[i].mean,
+            )
+        },
+    );
+    for (&i, position) in unbalanced.iter().zip(moved) {
+        if let Some(position) = position {
+            placed[i].position = position;
         }
     }
-    let [x, y, z, w] = sums;
-    [x / w, y / w, z / w]
 }
 
 /// Where a centre at a border belongs; `None` where there is none.

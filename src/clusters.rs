@@ -64,6 +64,8 @@ pub struct Clusters {
     /// For every point the centres it is shared among, nearest first, and how much each has; unused places have
     /// membership 0.
     pub shares: Vec<Shares>,
+    /// A tree of the centres.
+    pub index: Octree,
     /// Sweeps done.
     pub iterations: usize,
 }
@@ -143,7 +145,7 @@ pub fn cluster(
             break;
         }
     }
-    gather(&mut cells, &centers);
+    let index = gather(&mut cells, &centers);
     let fuzzifier = Fuzzifier::new(settling.fuzzifier);
     let shares = par::map(cells.len(), Scratch::default, |i, scratch| {
         let cell = &cells[i];
@@ -161,6 +163,7 @@ pub fn cluster(
     Ok(Clusters {
         centers,
         shares: shares.concat(),
+        index,
         iterations,
     })
 }
@@ -257,7 +260,7 @@ impl Traversal {
 const TAKEN: f32 = -1.0;
 
 /// Finds the centres within each cell's reach; at least the nearest one.
-fn gather(cells: &mut [Cell], centers: &[Vec3]) {
+fn gather(cells: &mut [Cell], centers: &[Vec3]) -> Octree {
     let index = Octree::build(centers);
     let reaches = par::map(cells.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
         let cell = &cells[i];
@@ -280,6 +283,7 @@ fn gather(cells: &mut [Cell], centers: &[Vec3]) {
     for (cell, reach) in cells.iter_mut().zip(reaches) {
         cell.reach = reach;
     }
+    index
 }
 
 /// One pass of eq. 5 and eq. 2 over all cells. Returns the largest movement, in wanted spacings.

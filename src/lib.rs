@@ -55,6 +55,7 @@ pub mod density;
 pub mod fcm;
 pub mod clusters;
 pub mod placement;
+mod surroundings;
 mod borders;
 pub mod paper;
 mod tolerance;

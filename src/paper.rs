@@ -122,6 +122,7 @@ pub fn cluster(
     Ok(Clustering {
         centers,
         shares,
+        index,
         spacing: features.spacing.iter().map(|s| s * shrink).collect(),
         cells: cells.len(),
         iterations,

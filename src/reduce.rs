@@ -11,13 +11,14 @@ use crate::density::{self, CurvatureSpacing, Density};
 use crate::error::Result;
 use crate::features::Features;
 use crate::height_field::cloud_distances;
-use crate::octree::{Neighbor, Octree};
+use crate::octree::Octree;
 use crate::paper;
 use crate::par;
 use crate::params::{Method, Placement, ReduceParams, Target};
 use crate::placement::{self, Members, Placed};
 use crate::power::Fuzzifier;
 use crate::progress::{Part, Progress, Stage};
+use crate::surroundings::{self, Around};
 use crate::tolerance;
 
 /// A reduced cloud. Every array but `assignment` has one entry a reduced point.
@@ -67,6 +68,8 @@ pub struct Clustering {
     pub centers: Vec<Vec3>,
     /// Memberships of every point in its nearest centres.
     pub shares: Vec<Shares>,
+    /// A tree of the centres.
+    pub index: Octree,
     /// Wanted spacing at every point.
     pub spacing: Vec<f32>,
     /// Sub-domains.
@@ -106,7 +109,7 @@ pub fn reduce(
     progress.update(Stage::Place, 0.0)?;
     let placement = job.placement(&goal);
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let mut placed = job.place(&clustering, &members, &goal);
+    let (mut placed, around) = job.place(&clustering, &members, &goal);
     progress.update(Stage::Place, 0.5)?;
     let nearest = if placement == Placement::Sample {
         placement::snap(tree, &clustering.shares, &members, &mut placed)
@@ -129,7 +132,7 @@ pub fn reduce(
         }
         assignment
     });
-    let stats = stats(tree, &clustering, power);
+    let stats = stats(tree, &clustering, &around, power);
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
         cloud: reduced,
@@ -211,7 +214,7 @@ impl Job<'_> {
                 return Ok(None);
             }
             let members = Members::new(&clustering.shares, clustering.centers.len());
-            let placed = self.place(&clustering, &members, &goal);
+            let (placed, _) = self.place(&clustering, &members, &goal);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let sites = Octree::build(&positions);
@@ -253,7 +256,13 @@ impl Job<'_> {
         }
     }
 
-    fn place(&self, clustering: &Clustering, members: &Members, goal: &Goal) -> Vec<Placed> {
+    /// The placed centres, and how the centres lay to each other before.
+    fn place(
+        &self,
+        clustering: &Clustering,
+        members: &Members,
+        goal: &Goal,
+    ) -> (Vec<Placed>, Vec<Around>) {
         let placement = self.placement(goal);
         let power = Fuzzifier::new(fuzzifier(self.params));
         let mut placed = placement::place(
@@ -263,15 +272,17 @@ impl Job<'_> {
             members,
             (placement, power),
         );
+        let around = surroundings::measure(&clustering.index, |i| placed[i].spacing);
         if matches!(goal, Goal::Density(..)) && placement != Placement::Center {
             borders::restore(
                 self.tree,
                 (self.denoised, self.features),
                 (&clustering.shares, members),
+                &around,
                 &mut placed,
             );
         }
-        placed
+        (placed, around)
     }
 }
 
@@ -284,6 +295,7 @@ fn keep_all(tree: &Octree, features: &Features) -> Clustering {
     Clustering {
         centers: tree.points.clone(),
         shares: (0..n as u32).map(alone).collect(),
+        index: Octree::build(&tree.points),
         spacing: features.spacing.clone(),
         cells: 0,
         iterations: 0,
@@ -318,6 +330,7 @@ fn adaptive(
     Ok(Clustering {
         centers: clusters.centers,
         shares: clusters.shares,
+        index: clusters.index,
         spacing: samples.density.spacing.clone(),
         cells: cells.len(),
         iterations: clusters.iterations,
@@ -325,7 +338,12 @@ fn adaptive(
     })
 }
 
-fn stats(tree: &Octree, clustering: &Clustering, power: Fuzzifier) -> ReduceStats {
+fn stats(
+    tree: &Octree,
+    clustering: &Clustering,
+    around: &[Around],
+    power: Fuzzifier,
+) -> ReduceStats {
     let centers = &clustering.centers;
     let mut objective = 0.0;
     for (p, s) in tree.points.iter().zip(&clustering.shares) {
@@ -334,22 +352,18 @@ fn stats(tree: &Octree, clustering: &Clustering, power: Fuzzifier) -> ReduceStat
                 power.raise(f64::from(u)) * f64::from(p.distance_squared(centers[i as usize]));
         }
     }
-    let index = Octree::build(centers);
-    let apart = par::map(centers.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
-        index.knn(index.points[i], 2, found);
-        found.get(1).map_or(0.0, |n| f64::from(n.distance2))
-    });
     let mut wanted = vec![(0.0, 0u32); centers.len()];
     for (s, &h) in clustering.shares.iter().zip(&clustering.spacing) {
         let (sum, n) = &mut wanted[s.center[0] as usize];
         *sum += f64::from(h);
         *n += 1;
     }
-    let relative = apart.iter().zip(&index.order).filter_map(|(d2, &i)| {
-        let (sum, n) = wanted[i as usize];
-        (sum > 0.0).then(|| d2.sqrt() * f64::from(n) / sum)
-    });
-    let separation = apart.iter().copied().fold(f64::INFINITY, f64::min);
+    let apart = || around.iter().map(|a| f64::from(a.apart2));
+    let relative = apart()
+        .zip(&wanted)
+        .filter(|&(apart2, &(sum, _))| sum > 0.0 && apart2.is_finite())
+        .map(|(apart2, &(sum, n))| apart2.sqrt() * f64::from(n) / sum);
+    let separation = apart().fold(f64::INFINITY, f64::min);
     ReduceStats {
         cells: clustering.cells,
         iterations: clustering.iterations,
