@@ -15,7 +15,7 @@ use crate::density::Density;
 use crate::error::Result;
 use crate::features::Features;
 use crate::lanes::{LANES, Lanes, places_within};
-use crate::octree::{Neighbor, Octree};
+use crate::octree::Octree;
 use crate::par;
 use crate::power::{Fuzzifier, Power};
 use crate::progress::{Progress, Stage};
@@ -262,24 +262,28 @@ const TAKEN: f32 = -1.0;
 /// Finds the centres within each cell's reach; at least the nearest one.
 fn gather(cells: &mut [Cell], centers: &[Vec3]) -> Octree {
     let index = Octree::build(centers);
-    let reaches = par::map(cells.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
-        let cell = &cells[i];
-        index.within(cell.origin, cell.half.length(), found);
-        let inside = |n: &&Neighbor| {
-            let away = (index.points[n.index as usize] - cell.origin).abs();
-            away.cmple(cell.half).all()
-        };
-        let mut reach: Vec<u32> = found
-            .iter()
-            .filter(inside)
-            .map(|n| index.order[n.index as usize])
-            .collect();
-        if reach.is_empty() {
-            reach.push(index.order[index.nearest(cell.origin).index as usize]);
-        }
-        reach.sort_unstable();
-        reach
-    });
+    let reaches = par::map(
+        cells.len(),
+        || (),
+        |i, ()| {
+            let cell = &cells[i];
+            let (lo, hi) = (cell.origin - cell.half, cell.origin + cell.half);
+            let mut reach = Vec::new();
+            index.visit_box(lo, hi, |range| {
+                let inside = |&k: &usize| {
+                    let p = index.points[k];
+                    p.cmpge(lo).all() && p.cmple(hi).all()
+                };
+                reach.extend(range.filter(inside).map(|k| index.order[k]));
+                true
+            });
+            if reach.is_empty() {
+                reach.push(index.order[index.nearest(cell.origin).index as usize]);
+            }
+            reach.sort_unstable();
+            reach
+        },
+    );
     for (cell, reach) in cells.iter_mut().zip(reaches) {
         cell.reach = reach;
     }

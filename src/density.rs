@@ -39,6 +39,8 @@ const SMALLEST: f32 = 1e-6;
 const GROUP: usize = 12;
 /// Groups that limit each other's spacing: a ring around each.
 const RING: usize = 12;
+/// Groups whose points are done in one go.
+const SLICE: usize = 64;
 /// A cell of groups gathers this many times as far as an even patch over its box would need.
 const MARGIN: f32 = 1.6;
 
@@ -236,22 +238,30 @@ impl Groups {
     fn spread(&self, tree: &Octree, mut wanted: Vec<f32>) -> Vec<f32> {
         let rings = rings(&self.centers);
         limit_gradient(&mut wanted, &self.centers, &rings);
-        let mut spacing = vec![0.0; tree.points.len()];
-        for (range, ring) in self.ranges.iter().zip(&rings) {
-            for k in range.clone() {
-                let p = tree.points[k];
-                // Inside its disc a group's spacing holds as it is.
-                let limit = |&j: &u32| {
-                    let j = j as usize;
-                    let radius = (self.area[j] / std::f64::consts::PI).sqrt() as f32;
-                    wanted[j] + GRADING * (p.distance(self.centers[j]) - radius).max(0.0)
-                };
-                let least = ring.iter().map(limit).fold(f32::INFINITY, f32::min);
-                // Where all points are equal any spacing will do, but not none.
-                spacing[k] = least.max(SMALLEST);
-            }
-        }
-        spacing
+        // Inside its disc a group's spacing holds as it is.
+        let disc = |&area: &f64| (area / std::f64::consts::PI).sqrt() as f32;
+        let discs: Vec<f32> = self.area.iter().map(disc).collect();
+        let of = |p: Vec3, ring: &[u32]| {
+            let limit = |&j: &u32| {
+                let j = j as usize;
+                wanted[j] + GRADING * (p.distance(self.centers[j]) - discs[j]).max(0.0)
+            };
+            let least = ring.iter().map(limit).fold(f32::INFINITY, f32::min);
+            // Where all points are equal any spacing will do, but not none.
+            least.max(SMALLEST)
+        };
+        let spacing = par::map(
+            rings.len().div_ceil(SLICE),
+            || (),
+            |slice, ()| {
+                let groups = slice * SLICE..((slice + 1) * SLICE).min(rings.len());
+                let points = groups.flat_map(|g| self.ranges[g].clone().map(move |k| (k, g)));
+                points
+                    .map(|(k, g)| of(tree.points[k], &rings[g]))
+                    .collect::<Vec<f32>>()
+            },
+        );
+        spacing.concat()
     }
 }
 

@@ -89,8 +89,14 @@ pub struct Neighborhood {
     reach: f32,
     /// Places in `around` of those near the block.
     near: Vec<u32>,
-    keys: Vec<u32>,
+    /// Squared distances from the last query, and the one that its answer was.
+    squares: Vec<Lanes>,
+    square: f32,
+    sorted: Vec<f32>,
 }
+
+/// Radii that are tried before distances are sorted.
+const GUESSES: usize = 6;
 
 /// Coordinate of a padding lane: outside of every support, and small enough to be squared.
 const FAR: f32 = 1e6;
@@ -102,8 +108,13 @@ impl Neighborhood {
         self.around.clear();
         self.reach = reach;
         let around = &mut self.around;
-        let whole = source.visit_box(lo - reach, hi + reach, |range| {
-            around.extend(range.map(|i| i as u32));
+        let (lo, hi) = (lo - reach, hi + reach);
+        let inside = |i: &usize| {
+            let p = source.points[*i];
+            p.cmpge(lo).all() && p.cmple(hi).all()
+        };
+        let whole = source.visit_box(lo, hi, |range| {
+            around.extend(range.filter(inside).map(|i| i as u32));
             around.len() <= MOST
         });
         if !whole {
@@ -133,6 +144,7 @@ impl Neighborhood {
     }
 
     fn load(&mut self, source: &Octree) {
+        self.square = 0.25 * self.reach * self.reach;
         let padded = self.around.len().next_multiple_of(LANES);
         for (axis, at) in self.at.iter_mut().enumerate() {
             at.clear();
@@ -146,23 +158,50 @@ impl Neighborhood {
         self.reach
     }
 
-    /// Distance from `q` to the `k`-th nearest gathered point, or to the farthest one if there are fewer.
+    /// Distance from `q` to the `k`-th nearest gathered point, or to the farthest one if there are fewer; where points lie on a
+    /// surface, to within a few hundredths: it is counted how many are within a radius, and that is scaled until it fits.
     pub fn kth_distance(&mut self, q: Vec3, k: usize) -> f32 {
         let [x, y, z] = q.to_array().map(Lanes::splat);
-        self.keys.clear();
+        self.squares.clear();
         for block in (0..self.at[0].len()).step_by(LANES) {
             let [dx, dy, dz] =
                 [(0, x), (1, y), (2, z)].map(|(axis, q)| Lanes::load(&self.at[axis][block..]) - q);
-            let distance2 = dx * dx + dy * dy + dz * dz;
-            // Positive floats order as their bits do.
-            self.keys.extend(distance2.0.map(f32::to_bits));
+            self.squares.push(dx * dx + dy * dy + dz * dz);
         }
-        self.keys.truncate(self.around.len());
-        let Some(k) = k.min(self.keys.len()).checked_sub(1) else {
+        let few = self.around.len() <= 2 * k;
+        let mut square = self.square;
+        for _ in 0..if few { 0 } else { GUESSES } {
+            let within = self.within(square);
+            let ratio = k as f32 / within;
+            square *= ratio.clamp(0.25, 4.0);
+            if (0.9..1.12).contains(&ratio) {
+                self.square = square;
+                return square.sqrt();
+            }
+        }
+        self.select(k)
+    }
+
+    /// How many gathered points are within the square of a distance.
+    fn within(&self, square: f32) -> f32 {
+        let (one, limit) = (Lanes::splat(1.0), Lanes::splat(square));
+        let mut count = Lanes::ZERO;
+        for squares in &self.squares {
+            count += limit.less(*squares, Lanes::ZERO, one);
+        }
+        count.sum()
+    }
+
+    /// The distance by sorting, for what no scaling finds.
+    fn select(&mut self, k: usize) -> f32 {
+        self.sorted.clear();
+        self.sorted.extend(self.squares.iter().flat_map(|s| s.0));
+        self.sorted.truncate(self.around.len());
+        let Some(k) = k.min(self.sorted.len()).checked_sub(1) else {
             return 0.0;
         };
-        let (_, &mut kth, _) = self.keys.select_nth_unstable(k);
-        f32::from_bits(kth).sqrt()
+        let (_, &mut kth, _) = self.sorted.select_nth_unstable_by(k, f32::total_cmp);
+        kth.sqrt()
     }
 
     /// Keeps what is within `reach` of the block's box.
@@ -216,7 +255,10 @@ mod tests {
                 let mut all: Vec<f32> = tree.points.iter().map(|p| p.distance(query)).collect();
                 all.sort_unstable_by(f32::total_cmp);
                 if all[15] <= reach {
-                    assert_eq!(hood.kth_distance(query, 16), all[15]);
+                    let found = hood.kth_distance(query, 16);
+                    let within = all.iter().filter(|&&d| d <= found).count();
+                    assert!((12..=21).contains(&within), "{within}");
+                    assert_eq!(hood.select(16), all[15]);
                 }
                 hood.narrow(&block, 0.05);
                 let near: Vec<usize> = hood.near().map(|(i, _)| i).collect();

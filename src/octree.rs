@@ -257,10 +257,16 @@ impl Octree {
 
     /// The nearest point.
     pub fn nearest(&self, q: Vec3) -> Neighbor {
-        let mut best = Neighbor {
+        let none = Neighbor {
             distance2: f32::INFINITY,
             index: 0,
         };
+        self.nearer_than(none, q)
+    }
+
+    /// The nearest point, where it is nearer than `found`; else `found`.
+    pub fn nearer_than(&self, found: Neighbor, q: Vec3) -> Neighbor {
+        let mut best = found;
         self.nearest_below(0, q, &mut best);
         best
     }

@@ -117,7 +117,7 @@ pub fn reduce(
         par::map(
             placed.len(),
             || (),
-            |i, ()| tree.nearest(placed[i].position).index,
+            |i, ()| placement::nearest(tree, &members, i, placed[i].position),
         )
     };
     let reduced = placement::carry(cloud, tree, &members, &placed, &nearest, &params.attributes);
