@@ -425,6 +425,11 @@ impl Scratch {
 }
 
 impl Shares {
+    /// The centres that have a share; the nearest one in unused places.
+    pub fn near(&self) -> [u32; SHARES] {
+        std::array::from_fn(|j| self.center[if self.u[j] > 0.0 { j } else { 0 }])
+    }
+
     /// Eq. 5 over the nearest centres of `reach` only.
     pub fn of(
         p: Vec3,

@@ -1,91 +1,164 @@
-//! Distances to a surface of which only points with normals are known: the reduced cloud's.
+//! The surface of which only points with normals are known: the reduced cloud's.
 //!
-//! Around a query the reduced points on the face and sheet of the nearest one give a quadric height field over their mean
-//! tangent plane, fitted to their positions and normals by least squares with Wendland weights. The distance is to that
-//! quadric's tangent plane over the query, at most the distance to the nearest reduced point. Points that are left are
-//! tried as further faces, and the nearest face counts. So points of a curved surface have a distance of fourth order in
-//! the spacing, where to tangent planes it is second.
+//! Every reduced point has a patch: a quadric height field over the mean tangent plane of the reduced points around it on its
+//! own face and sheet, fitted to their positions and normals by least squares with Wendland weights. The distance of a point
+//! is that to the tangent plane over it of the patch of the nearest reduced point, or of one near it that is on another
+//! face or sheet, at most the distance to the nearest reduced point itself. So points of a curved surface have a distance of
+//! fourth order in the spacing, where to tangent planes it is second.
 //!
-//! Eight queries are answered at once, a lane each.
+//! Eight patches are fitted at once, a lane each.
 
 use glam::Vec3;
 
+use crate::clusters::SHARES;
 use crate::error::Result;
 use crate::lanes::{LANES, Lanes};
 use crate::neighborhood::{Block, CELL, Neighborhood, bounds};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::progress::{Progress, Stage};
-use crate::report::DistanceStats;
 
-/// Reduced points around a query that make up its local surface, about.
+/// Reduced points around one that make up its patch, about.
 const NEIGHBORS: usize = 8;
 /// Radius of the weights, in distances to the eighth reduced point: weights vanish at their rim.
 const SUPPORT: f32 = 1.2;
-/// A query with fewer reduced points within its block's radius is in a sparser part, and asks for itself.
+/// A point with fewer reduced points within its block's radius is in a sparser part, and asks for itself.
 const FEW: f32 = 5.0;
-/// Faces or sheets that are tried: at a corner three meet.
-const FACES: usize = 3;
 /// Neighbours whose normals differ by more (cosine of 60°) belong to another face.
 const FACE_COSINE: f32 = 0.5;
+/// Patches whose normals differ by more (cosine of 25°) may have a crease between them, and a point next to it belongs to
+/// either: with 60° the faces of a point on a right-angled edge would go unasked, and edges seem a quarter less accurate.
+const SMOOTH_COSINE: f32 = 0.9;
 /// Neighbours that stand out by more belong to another sheet: the offset along the mean of both normals over the
 /// distance, which on one curved sheet is of second order in the distance.
 const SHEET_SINE: f32 = 0.2;
 /// Ridge on the quadric's second derivatives, relative to the weight of the data: a plane where the data leave them
 /// open, unnoticeable elsewhere.
 const RIDGE: f32 = 1e-5;
-/// Weight below which members say nothing of their face: products of weights would leave the range of single precision.
-const LIGHT: f32 = 1e-6;
 /// Coefficients of a quadric.
 const QUADRIC: usize = 6;
 
-/// Distances of `points` (all in the unit frame), best in an octree's order, to the surface that reduced points stand for.
-///
-/// `reduced` is their tree, `normals` theirs, unit and of any sign, in the order from which the tree was built.
+/// A quadric over the tangent plane of one reduced point.
+#[derive(Debug, Clone, Copy)]
+struct Patch {
+    at: Vec3,
+    /// Normal of the plane; the point's own.
+    up: Vec3,
+    normal: Vec3,
+    /// Unit of length of the coefficients; none of the patch is known farther away.
+    radius: f32,
+    /// Height a + b u + c v + d u²/2 + e u v + f v²/2 in units of the radius.
+    c: [f32; QUADRIC],
+}
+
+/// The surface that reduced points stand for.
+#[derive(Debug, Clone)]
+pub struct Patches(Vec<Patch>);
+
+impl Patches {
+    /// Fits the patches of the points of a tree (unit frame), in the order from which it was built; so are `normals`, unit and
+    /// of any sign.
+    pub fn fit(reduced: &Octree, normals: &[Vec3]) -> Patches {
+        let normals: Vec<Vec3> = reduced.order.iter().map(|&i| normals[i as usize]).collect();
+        let fitting = Fitting {
+            reduced,
+            normals: &normals,
+        };
+        let fitted = par::map(
+            reduced.points.len().div_ceil(CELL),
+            Scratch::default,
+            |i, scratch| {
+                let end = ((i + 1) * CELL).min(reduced.points.len());
+                fitting.cell(i * CELL..end, scratch)
+            },
+        );
+        let mut patches = vec![Patch::NONE; normals.len()];
+        for (&i, patch) in reduced.order.iter().zip(fitted.into_iter().flatten()) {
+            patches[i as usize] = patch;
+        }
+        Patches(patches)
+    }
+
+    /// Distance of `p`, of which `near` are the nearest reduced points, nearest first.
+    pub fn distance(&self, p: Vec3, near: [u32; SHARES]) -> f32 {
+        let [nearest, others @ ..] = near.map(|i| &self.0[i as usize]);
+        let mut distance = nearest.distance(p);
+        for other in others {
+            if !nearest.shares_face(other) {
+                distance = distance.min(other.distance(p));
+            }
+        }
+        distance
+    }
+}
+
+/// Distances of `points` to the surface; `near` as in [`Patches::distance`].
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
-pub fn cloud_distance(
-    points: &[Vec3],
-    reduced: &Octree,
-    normals: &[Vec3],
-    progress: &mut dyn Progress,
-) -> Result<DistanceStats> {
-    let distances = cloud_distances(points, reduced, normals, progress)?;
-    Ok(DistanceStats::of(distances.into_iter().map(f64::from)))
-}
-
-/// The distance of every point, as [`cloud_distance`].
-///
-/// # Errors
-/// The same.
 pub fn cloud_distances(
     points: &[Vec3],
-    reduced: &Octree,
-    normals: &[Vec3],
+    near: &[[u32; SHARES]],
+    patches: &Patches,
     progress: &mut dyn Progress,
 ) -> Result<Vec<f32>> {
-    let normals: Vec<Vec3> = reduced.order.iter().map(|&i| normals[i as usize]).collect();
-    let surface = Surface {
-        points,
-        reduced,
-        normals: &normals,
-    };
     let distances = par::map_progress(
-        points.len().div_ceil(CELL),
-        50.0,
+        points.len().div_ceil(SLICE),
+        40.0,
         (Stage::Report, progress),
-        Scratch::default,
-        |i, scratch| surface.cell(i * CELL..((i + 1) * CELL).min(points.len()), scratch),
+        || (),
+        |i, ()| {
+            let end = ((i + 1) * SLICE).min(points.len());
+            (i * SLICE..end)
+                .map(|k| patches.distance(points[k], near[k]))
+                .collect::<Vec<f32>>()
+        },
     )?;
     Ok(distances.concat())
 }
 
-/// Queries, and the points with normals that they ask for.
-struct Surface<'a> {
-    points: &'a [Vec3],
+/// Points whose distances are measured in one go.
+const SLICE: usize = 1024;
+
+impl Patch {
+    /// Before it is fitted.
+    const NONE: Patch = Patch {
+        at: Vec3::ZERO,
+        up: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        radius: 0.0,
+        c: [0.0; QUADRIC],
+    };
+
+    fn distance(&self, p: Vec3) -> f32 {
+        let away = p.distance(self.at);
+        if away >= self.radius {
+            return away;
+        }
+        let d = (p - self.at) / self.radius;
+        let (u, v) = self.up.any_orthonormal_pair();
+        let (x, y, z) = (d.dot(u), d.dot(v), d.dot(self.up));
+        let [c0, cx, cy, cxx, cxy, cyy] = self.c;
+        let (dx, dy) = (cx + cxx * x + cxy * y, cy + cxy * x + cyy * y);
+        let height = c0 + cx * x + cy * y + 0.5 * (cxx * x * x + cyy * y * y) + cxy * x * y;
+        let off = (z - height).abs() * self.radius / (1.0 + dx * dx + dy * dy).sqrt();
+        off.min(away)
+    }
+
+    /// Whether another one continues this one. Those without a normal are a face each.
+    fn shares_face(&self, other: &Patch) -> bool {
+        let agreement = self.normal.dot(other.normal);
+        let apart = other.at - self.at;
+        let mean = self.normal + other.normal * 1f32.copysign(agreement);
+        let stands_out = 0.5 * mean.dot(apart);
+        agreement.abs() >= SMOOTH_COSINE
+            && stands_out * stands_out <= SHEET_SINE * SHEET_SINE * apart.length_squared()
+    }
+}
+
+/// Reduced points and their normals, in the tree's order.
+struct Fitting<'a> {
     reduced: &'a Octree,
-    /// In the tree's order.
     normals: &'a [Vec3],
 }
 
@@ -98,16 +171,13 @@ struct Scratch {
     around: Vec<Member>,
 }
 
-/// A reduced point as each lane's query sees it.
+/// A reduced point as each lane's point sees it.
 #[derive(Clone, Copy)]
 struct Member {
-    /// From the query, in radii.
+    /// From the lane's point, in radii.
     at: [Lanes; 3],
-    length2: Lanes,
     normal: [Lanes; 3],
-    /// Wendland weight; 0 once it has been on a face.
-    weight: Lanes,
-    /// Weight on the face at hand, with the sign that turns the normal to the face's side.
+    /// Wendland weight, 0 for those of other faces, with the sign that turns the normal to the lane's side.
     signed: Lanes,
 }
 
@@ -115,84 +185,116 @@ fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-impl Surface<'_> {
-    fn cell(&self, range: std::ops::Range<usize>, scratch: &mut Scratch) -> Vec<f32> {
-        let mut distances = Vec::with_capacity(range.len());
-        let corners = bounds(&self.points[range.clone()]);
-        let middle = self.points[range.start + range.len() / 2];
+impl Fitting<'_> {
+    fn cell(&self, range: std::ops::Range<usize>, scratch: &mut Scratch) -> Vec<Patch> {
+        let points = &self.reduced.points;
+        let mut patches = Vec::with_capacity(range.len());
+        let corners = bounds(&points[range.clone()]);
+        let middle = points[range.start + range.len() / 2];
         self.reduced.knn(middle, NEIGHBORS, &mut scratch.found);
         // Twice the radius at the middle: what needs more asks for itself.
         let reach = 2.0 * SUPPORT * farthest(&scratch.found);
         let gathered = scratch.cell.gather(self.reduced, corners, reach);
-        for block in Block::all(self.points, range) {
-            let middle = self.points[block.middle()];
+        for block in Block::all(points, range) {
+            let middle = points[block.middle()];
             let radius = SUPPORT * scratch.cell.kth_distance(middle, NEIGHBORS);
             let together = gathered && radius > 0.0 && radius <= reach;
-            let start = distances.len();
+            let start = patches.len();
             if together {
                 scratch.cell.narrow(&block, radius);
                 let found = self.block(&block, radius, &scratch.cell, &mut scratch.around);
-                distances.extend_from_slice(&found[..block.range.len()]);
+                patches.extend_from_slice(&found[..block.range.len()]);
             } else {
-                distances.extend(block.range.clone().map(|_| f32::INFINITY));
+                patches.extend(block.range.clone().map(|_| Patch::NONE));
             }
-            for (i, distance) in block.range.clone().zip(&mut distances[start..]) {
-                if *distance == f32::INFINITY {
-                    *distance = self.alone(i, scratch);
+            for (i, patch) in block.range.clone().zip(&mut patches[start..]) {
+                if patch.radius == 0.0 {
+                    *patch = self.alone(i, scratch);
                 }
             }
         }
-        distances
+        patches
     }
 
-    /// The distance of one query from its own nearest.
-    fn alone(&self, i: usize, scratch: &mut Scratch) -> f32 {
-        let query = self.points[i];
-        self.reduced.knn(query, NEIGHBORS, &mut scratch.found);
+    /// The patch of one point from its own nearest.
+    fn alone(&self, i: usize, scratch: &mut Scratch) -> Patch {
+        let at = self.reduced.points[i];
+        self.reduced.knn(at, NEIGHBORS, &mut scratch.found);
         let radius = SUPPORT * farthest(&scratch.found);
+        let normal = self.normals[i];
+        let place = Patch {
+            at,
+            normal,
+            ..Patch::NONE
+        };
         if radius == 0.0 {
-            return 0.0;
+            return place;
         }
-        scratch.own.gather_at(self.reduced, query, radius);
-        let block = Block::new(self.points, i..i + 1);
-        let [distance, ..] = self.block(&block, radius, &scratch.own, &mut scratch.around);
-        // With fewer reduced points than asked for, the nearest one is all that is known.
-        distance.min(scratch.found[0].distance2.sqrt())
+        scratch.own.gather_at(self.reduced, at, radius);
+        let block = Block::new(&self.reduced.points, i..i + 1);
+        let [patch, ..] = self.block(&block, radius, &scratch.own, &mut scratch.around);
+        // With fewer reduced points than asked for, the place is all that is known.
+        if patch.radius == 0.0 { place } else { patch }
     }
 
-    /// The distances of a block; infinite where too few reduced points are within `radius`.
+    /// The patches of a block; of radius 0 where too few reduced points are within `radius`.
     fn block(
         &self,
         block: &Block,
         radius: f32,
         hood: &Neighborhood,
         around: &mut Vec<Member>,
-    ) -> [f32; LANES] {
+    ) -> [Patch; LANES] {
         let one = Lanes::splat(1.0);
         let scale = Lanes::splat(1.0 / radius);
-        let (mut inside, mut least) = (Lanes::ZERO, Lanes::splat(f32::INFINITY));
+        let normal = [0, 1, 2].map(|axis| block.lanes(|i| self.normals[i][axis]));
+        let (mut inside, mut total) = (Lanes::ZERO, Lanes::ZERO);
+        let mut up = [Lanes::ZERO; 3];
         around.clear();
         around.extend(hood.near().map(|(j, at)| {
             let at = [0, 1, 2].map(|axis| (at[axis] - block.at[axis]) * scale);
             let length2 = dot(at, at);
-            least = least.min(length2);
             inside += length2.less(one, one, Lanes::ZERO);
+            let own = self.normals[j].to_array().map(Lanes::splat);
+            let agreement = dot(own, normal);
+            let sign = agreement.map(|x| 1f32.copysign(x));
+            let mean = [0, 1, 2].map(|a| normal[a] + own[a] * sign);
+            let stands_out = dot(mean, at) * Lanes::splat(0.5);
+            let limit = length2 * Lanes::splat(SHEET_SINE * SHEET_SINE);
+            let on_face = (agreement * sign).less(
+                Lanes::splat(FACE_COSINE),
+                Lanes::ZERO,
+                limit.less(stands_out * stands_out, Lanes::ZERO, wendland(length2)),
+            );
+            // The point itself, also where it has no normal.
+            let weight = Lanes::ZERO.less(length2, on_face, one);
+            total += weight;
+            let signed = weight * sign;
+            up = [0, 1, 2].map(|a| up[a] + signed * own[a]);
             Member {
                 at,
-                length2,
-                normal: self.normals[j].to_array().map(Lanes::splat),
-                weight: wendland(length2),
-                signed: Lanes::ZERO,
+                normal: own,
+                signed,
             }
         }));
-        let mut least = least.sqrt();
-        for _ in 0..FACES {
-            let Some(height) = face(around) else { break };
-            least = least.min(height);
-        }
-        let enough = Lanes::splat(FEW.min(self.reduced.points.len() as f32));
-        let least = least * Lanes::splat(radius);
-        inside.less(enough, Lanes::splat(f32::INFINITY), least).0
+        let length = dot(up, up).sqrt().max(Lanes::splat(f32::MIN_POSITIVE));
+        let up = up.map(|x| x / length);
+        let c = quadric(around, up, total);
+        let enough = FEW.min(self.reduced.points.len() as f32);
+        std::array::from_fn(|l| {
+            let i = block.range.start + l.min(block.range.len() - 1);
+            Patch {
+                at: self.reduced.points[i],
+                up: Vec3::from_array(up.map(|x| x.0[l])),
+                normal: self.normals[i],
+                radius: if inside.0[l] < enough || length.0[l] == f32::MIN_POSITIVE {
+                    0.0
+                } else {
+                    radius
+                },
+                c: c.map(|c| c.0[l]),
+            }
+        })
     }
 }
 
@@ -208,48 +310,8 @@ fn wendland(square: Lanes) -> Lanes {
     rest2 * rest2 * (Lanes::splat(4.0) * t + Lanes::splat(1.0))
 }
 
-/// Takes the face of the nearest member that is left, and returns the distance to it, in radii; `None` if nothing is left
-/// for any lane.
-fn face(around: &mut [Member]) -> Option<Lanes> {
-    let mut nearest = Lanes::splat(f32::INFINITY);
-    let (mut at, mut normal) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-    for member in around.iter() {
-        // Those that are left have a weight.
-        let length2 = Lanes::ZERO.less(member.weight, member.length2, Lanes::splat(f32::INFINITY));
-        at = [0, 1, 2].map(|a| length2.less(nearest, member.at[a], at[a]));
-        normal = [0, 1, 2].map(|a| length2.less(nearest, member.normal[a], normal[a]));
-        nearest = nearest.min(length2);
-    }
-    if nearest.0.iter().all(|d| *d == f32::INFINITY) {
-        return None;
-    }
-    let mut up = [Lanes::ZERO; 3];
-    let mut total = Lanes::ZERO;
-    for member in around.iter_mut() {
-        let agreement = dot(member.normal, normal);
-        let sign = agreement.map(|x| 1f32.copysign(x));
-        let apart = [0, 1, 2].map(|a| member.at[a] - at[a]);
-        let mean = [0, 1, 2].map(|a| normal[a] + member.normal[a] * sign);
-        let stands_out = dot(mean, apart) * Lanes::splat(0.5);
-        let limit = dot(apart, apart) * Lanes::splat(SHEET_SINE * SHEET_SINE);
-        let same_face = (agreement * sign).less(
-            Lanes::splat(FACE_COSINE),
-            Lanes::ZERO,
-            limit.less(stands_out * stands_out, Lanes::ZERO, member.weight),
-        );
-        // The face's own first member, also where it has no normal.
-        let on_face = nearest.less(member.length2, same_face, member.weight);
-        member.weight = Lanes::ZERO.less(on_face, Lanes::ZERO, member.weight);
-        member.signed = on_face * sign;
-        up = [0, 1, 2].map(|a| up[a] + member.signed * member.normal[a]);
-        total += on_face;
-    }
-    let length = dot(up, up).sqrt().max(Lanes::splat(f32::MIN_POSITIVE));
-    Some(height(around, up.map(|x| x / length), total))
-}
-
-/// Distance from the origin to the tangent plane over it of the quadric through the face's members.
-fn height(around: &[Member], up: [Lanes; 3], total: Lanes) -> Lanes {
+/// The quadric through the face's members.
+fn quadric(around: &[Member], up: [Lanes; 3], total: Lanes) -> [Lanes; QUADRIC] {
     let (u, v) = tangents(up);
     let half = Lanes::splat(0.5);
     let one = Lanes::splat(1.0);
@@ -287,11 +349,7 @@ fn height(around: &[Member], up: [Lanes; 3], total: Lanes) -> Lanes {
     for (i, row) in matrix.iter_mut().enumerate().skip(3) {
         row[i] += Lanes::splat(RIDGE) * total;
     }
-    let c = solve(matrix, right);
-    let height = c[0].max(Lanes::ZERO - c[0]);
-    let height = height / (one + c[1] * c[1] + c[2] * c[2]).sqrt();
-    // A lane without members on this face, or with one at the rim of its support only, has none.
-    Lanes::splat(LIGHT).less(total, height, Lanes::splat(f32::INFINITY))
+    solve(matrix, right)
 }
 
 /// Two unit vectors across each lane's unit vector (Duff et al., "Building an orthonormal basis, revisited", 2017).

@@ -9,7 +9,7 @@ use crate::extract::{ExtractParams, Mesh, extract};
 use crate::features::Features;
 use crate::field::Field;
 use crate::fit;
-use crate::height_field::cloud_distance;
+use crate::height_field::{Patches, cloud_distances};
 use crate::octree::Octree;
 use crate::orient;
 use crate::outliers;
@@ -120,8 +120,9 @@ pub fn reduce(
     let Input { tree, features, .. } = &input;
     let mut reduced = reduce::reduce(&input.cloud, tree, features, params, &mut clock)?;
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
-    let sites = Octree::build(&reduced.cloud.points);
-    let distance = cloud_distance(&tree.points, &sites, normals, &mut clock)?;
+    let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
+    let distances = cloud_distances(&tree.points, &reduced.near, &patches, &mut clock)?;
+    let distance = DistanceStats::of(distances.into_iter().map(f64::from));
     let report = reduce_report(&input, &reduced, distance, &clock);
     input.restore(&mut reduced);
     Ok(ReducedCloud { reduced, report })

@@ -10,7 +10,7 @@ use crate::clusters::{self, SHARES, Samples, Settling, Shares};
 use crate::density::{self, CurvatureSpacing, Density};
 use crate::error::Result;
 use crate::features::Features;
-use crate::height_field::cloud_distances;
+use crate::height_field::{Patches, cloud_distances};
 use crate::octree::Octree;
 use crate::paper;
 use crate::par;
@@ -38,6 +38,8 @@ pub struct Reduced {
     /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order;
     /// [`crate::outliers::DROPPED`] for one that was dropped.
     pub assignment: Option<Vec<u32>>,
+    /// The reduced points nearest to each input point, nearest first, in the octree's order.
+    pub near: Vec<[u32; SHARES]>,
     /// What the clustering did.
     pub stats: ReduceStats,
     /// Why the count is not what was asked for, where it is not; else empty.
@@ -141,6 +143,7 @@ pub fn reduce(
         weights,
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
+        near: clustering.shares.iter().map(Shares::near).collect(),
         stats,
         reason,
     })
@@ -217,8 +220,9 @@ impl Job<'_> {
             let (placed, _) = self.place(&clustering, &members, &goal);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
-            let sites = Octree::build(&positions);
-            cloud_distances(self.denoised, &sites, &normals, progress).map(Some)
+            let patches = Patches::fit(&Octree::build(&positions), &normals);
+            let near: Vec<_> = clustering.shares.iter().map(Shares::near).collect();
+            cloud_distances(self.denoised, &near, &patches, progress).map(Some)
         })?;
         Ok(goal(chord))
     }

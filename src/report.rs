@@ -90,7 +90,7 @@ pub struct ReduceReport {
     pub noise: f64,
     /// Points that the paper calls typical data with sharp feature, kept as they are.
     pub sharp_points: usize,
-    /// From the input points to the reduced surface ([`crate::height_field::cloud_distance`]).
+    /// From the input points to the reduced surface ([`crate::height_field`]).
     pub distance: DistanceStats,
     /// Milliseconds by stage.
     pub ms: StageTimes,

@@ -2,11 +2,10 @@
 
 mod common;
 
-use common::{Shape, points};
+use common::{Shape, distances_to, points};
 use glam::{DVec3, Vec3};
 use pointweave::density::quotas;
 use pointweave::features::Features;
-use pointweave::height_field::cloud_distances;
 use pointweave::octree::Octree;
 use pointweave::outliers::{self, DROPPED};
 use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Outliers, Placement, Target};
@@ -783,9 +782,8 @@ fn true_surface(model: Model, scan: &Cloud) -> Vec<Vec3> {
 
 /// What 99 % of the true surface are within of the local surfaces that reduced points stand for.
 fn covered_within(truth: &[Vec3], r: &Reduced) -> f64 {
-    let sites = Octree::build(&r.cloud.points);
     let normals = r.cloud.normals.as_deref().unwrap();
-    let mut distances = cloud_distances(truth, &sites, normals, &mut Silent).unwrap();
+    let mut distances = distances_to(&r.cloud.points, normals, truth);
     distances.sort_unstable_by(f32::total_cmp);
     f64::from(distances[distances.len() * 99 / 100])
 }

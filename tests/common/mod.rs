@@ -2,7 +2,11 @@
 
 #![allow(dead_code)] // every test file takes what it needs
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+use pointweave::clusters::SHARES;
+use pointweave::height_field::{Patches, cloud_distances};
+use pointweave::octree::Octree;
+use pointweave::progress::Silent;
 use pointweave::rng::Rng;
 use std::f64::consts::{PI, TAU};
 
@@ -128,4 +132,17 @@ fn direction(rng: &mut Rng) -> DVec3 {
 /// Points of an array `x y z …`.
 pub fn points(positions: &[f64]) -> impl Iterator<Item = DVec3> + '_ {
     positions.chunks_exact(3).map(DVec3::from_slice)
+}
+
+/// Distances of points to the surface that reduced points with normals stand for, the nearest ones found by a search.
+pub fn distances_to(reduced: &[Vec3], normals: &[Vec3], points: &[Vec3]) -> Vec<f32> {
+    let tree = Octree::build(reduced);
+    let patches = Patches::fit(&tree, normals);
+    let mut found = Vec::new();
+    let mut nearest = |p: &Vec3| -> [u32; SHARES] {
+        tree.knn(*p, SHARES, &mut found);
+        std::array::from_fn(|j| tree.order[found.get(j).unwrap_or(&found[0]).index as usize])
+    };
+    let near: Vec<_> = points.iter().map(&mut nearest).collect();
+    cloud_distances(points, &near, &patches, &mut Silent).expect("nobody cancels")
 }
