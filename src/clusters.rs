@@ -248,10 +248,10 @@ impl Traversal {
             let scale = Lanes::load(&self.scale[block..]);
             let distance2 = (dx * dx + dy * dy + dz * dz) * scale;
             let far = distance2.min(Lanes::load(&self.far[block..]));
-            self.far[block..block + LANES].copy_from_slice(&far.0);
+            self.far[block..block + LANES].copy_from_slice(&far.to_array());
             farthest = farthest.max(far);
         }
-        let farthest = farthest.0.into_iter().fold(TAKEN, f32::max);
+        let farthest = farthest.to_array().into_iter().fold(TAKEN, f32::max);
         self.far.iter().position(|&f| f == farthest).unwrap_or(0)
     }
 }
@@ -291,7 +291,7 @@ fn gather(cells: &mut [Cell], centers: &[Vec3]) -> Octree {
 }
 
 /// One pass of eq. 5 and eq. 2 over all cells. Returns the largest movement, in wanted spacings.
-fn sweep<P: Power<f32> + Send + Sync>(
+fn sweep<P: Power<Lanes> + Send + Sync>(
     power: P,
     samples: Samples,
     cells: &[Cell],
@@ -390,7 +390,7 @@ impl Scratch {
     }
 
     /// Memberships of eq. 5 block by block, summed for eq. 2 as they come.
-    fn accumulate<P: Power<f32>>(&mut self, power: P) {
+    fn accumulate<P: Power<Lanes>>(&mut self, power: P) {
         for block in (0..self.weight.len()).step_by(LANES) {
             self.narrow(block);
             let [x, y, z] = [0, 1, 2].map(|axis| Lanes::load(&self.x[axis][block..]));
@@ -408,12 +408,12 @@ impl Scratch {
             let mut total = Lanes::ZERO;
             for ratio in &mut self.ratio {
                 *ratio = nearest / *ratio;
-                total += ratio.map(|r| power.share(r));
+                total += power.share(*ratio);
             }
             // u = share/total, and u^m = share r / total^m, as share^m = r^(m/(m-1)).
-            let scale = weight * (Lanes::splat(1.0) / total).map(|u| power.raise(u));
+            let scale = weight * power.raise(Lanes::splat(1.0) / total);
             for (&ratio, &near) in self.ratio.iter().zip(&self.near) {
-                let w = scale * ratio * ratio.map(|r| power.share(r));
+                let w = scale * ratio * power.share(ratio);
                 let sums = &mut self.sums[near as usize];
                 sums[0] += w;
                 sums[1] += w * x;

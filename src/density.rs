@@ -296,7 +296,7 @@ fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
             hood.narrow(&block, radius);
             rings.extend(block.range.clone().map(|i| {
                 let near = hood.near().filter(|(_, at)| {
-                    let at = Vec3::from_array(at.map(|x| x.0[0]));
+                    let at = Vec3::from_array(at.map(|x| x.lane(0)));
                     at.distance_squared(tree.points[i]) <= radius * radius
                 });
                 near.map(|(j, _)| tree.order[j]).collect::<Vec<u32>>()

@@ -150,7 +150,7 @@ impl<'a> Sums<'a> {
             let (dx, dy, dz) = (px - x, py - y, pz - z);
             let length2 = dx * dx + dy * dy + dz * dz;
             let dot = nx * mx + ny * my + nz * mz;
-            let sign = dot.map(|d| 1f32.copysign(d));
+            let sign = dot.sign();
             let (mx, my, mz) = (mx * sign, my * sign, mz * sign);
             let angle2 = clip(Lanes::splat(2.0) - (dot + dot) * sign);
             let away = half * ((nx + mx) * dx + (ny + my) * dy + (nz + mz) * dz);
@@ -185,9 +185,9 @@ impl<'a> Sums<'a> {
                 *sum += term;
             }
         }
-        let [x, y, z, total, any_side] = sums.map(|sum| sum.0);
+        let [x, y, z, total, any_side] = sums.map(Lanes::to_array);
         std::array::from_fn(|l| {
-            let n = Vec3::from_array(self.normal.map(|n| n.0[l]));
+            let n = Vec3::from_array(self.normal.map(|n| n.lane(l)));
             // Without noise the plane's normal is the better one, but for the neighbours of a crease.
             let refused = 1.0 - total[l] / any_side[l].max(f32::MIN_POSITIVE);
             let crease = (refused - NEAR_CREASE.start) / (NEAR_CREASE.end - NEAR_CREASE.start);
@@ -216,7 +216,7 @@ impl<'a> Sums<'a> {
                 *sum += term;
             }
         }
-        let [total, offset, turn, way] = sums.map(|sum| sum.0);
+        let [total, offset, turn, way] = sums.map(Lanes::to_array);
         std::array::from_fn(|l| Filtered {
             normal: Vec3::ZERO,
             offset: if total[l] > 0.0 {

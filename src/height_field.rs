@@ -257,7 +257,7 @@ impl Fitting<'_> {
             inside += length2.less(one, one, Lanes::ZERO);
             let own = self.normals[j].to_array().map(Lanes::splat);
             let agreement = dot(own, normal);
-            let sign = agreement.map(|x| 1f32.copysign(x));
+            let sign = agreement.sign();
             let mean = [0, 1, 2].map(|a| normal[a] + own[a] * sign);
             let stands_out = dot(mean, at) * Lanes::splat(0.5);
             let limit = length2 * Lanes::splat(SHEET_SINE * SHEET_SINE);
@@ -285,14 +285,14 @@ impl Fitting<'_> {
             let i = block.range.start + l.min(block.range.len() - 1);
             Patch {
                 at: self.reduced.points[i],
-                up: Vec3::from_array(up.map(|x| x.0[l])),
+                up: Vec3::from_array(up.map(|x| x.lane(l))),
                 normal: self.normals[i],
-                radius: if inside.0[l] < enough || length.0[l] == f32::MIN_POSITIVE {
+                radius: if inside.lane(l) < enough || length.lane(l) == f32::MIN_POSITIVE {
                     0.0
                 } else {
                     radius
                 },
-                c: c.map(|c| c.0[l]),
+                c: c.map(|c| c.lane(l)),
             }
         })
     }
@@ -320,7 +320,7 @@ fn quadric(around: &[Member], up: [Lanes; 3], total: Lanes) -> [Lanes; QUADRIC] 
     let mut right = [Lanes::ZERO; QUADRIC];
     for member in around {
         let weight = member.signed.max(Lanes::ZERO - member.signed);
-        let sign = member.signed.map(|x| 1f32.copysign(x));
+        let sign = member.signed.sign();
         let (x, y, z) = (dot(u, member.at), dot(v, member.at), dot(up, member.at));
         let steep = sign / (dot(member.normal, up) * sign).max(Lanes::splat(FACE_COSINE));
         let slope = [u, v].map(|t| Lanes::ZERO - dot(member.normal, t) * steep);
@@ -355,7 +355,7 @@ fn quadric(around: &[Member], up: [Lanes; 3], total: Lanes) -> [Lanes; QUADRIC] 
 /// Two unit vectors across each lane's unit vector (Duff et al., "Building an orthonormal basis, revisited", 2017).
 fn tangents([x, y, z]: [Lanes; 3]) -> ([Lanes; 3], [Lanes; 3]) {
     let one = Lanes::splat(1.0);
-    let sign = z.map(|z| 1f32.copysign(z));
+    let sign = z.sign();
     let a = (Lanes::ZERO - one) / (sign + z);
     let b = x * y * a;
     (
@@ -417,7 +417,7 @@ mod tests {
             let right = |i: usize| (0..QUADRIC).map(|j| entry(i, j) * x[j]).sum::<f32>();
             let found = solve(matrix, std::array::from_fn(|i| Lanes::splat(right(i))));
             for i in 0..QUADRIC {
-                let sum: f32 = (0..QUADRIC).map(|j| entry(i, j) * found[j].0[5]).sum();
+                let sum: f32 = (0..QUADRIC).map(|j| entry(i, j) * found[j].lane(5)).sum();
                 assert!((sum - right(i)).abs() < 1e-2, "{sum} {} {rank}", right(i));
             }
         }
@@ -433,7 +433,7 @@ mod tests {
                 _ => Vec3::from_array(std::array::from_fn(|_| rng.normal() as f32)).normalize(),
             };
             let (u, v) = tangents(n.to_array().map(Lanes::splat));
-            let [u, v] = [u, v].map(|t| Vec3::new(t[0].0[0], t[1].0[0], t[2].0[0]));
+            let [u, v] = [u, v].map(|t| Vec3::from_array(t.map(|x| x.lane(0))));
             assert!((u.length() - 1.0).abs() < 1e-5 && (v.length() - 1.0).abs() < 1e-5);
             assert!(u.dot(v).abs().max(u.dot(n).abs()).max(v.dot(n).abs()) < 1e-5);
         }

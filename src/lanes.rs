@@ -1,31 +1,32 @@
-//! Eight `f32` side by side.
+//! Eight `f32` side by side: the machine's vector instructions (simd128 in wasm), by the crate `wide`.
 //!
-//! Plain arrays with element-wise operators: compilers turn them into the vector instructions of the machine (simd128 in
-//! wasm), and every lane rounds as a scalar would, so results do not depend on that.
+//! Every operation rounds as its scalar does, so results do not depend on the machine.
 
-use std::ops::{Add, AddAssign, Div, Mul, Sub};
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Sub};
+
+use wide::f32x8;
 
 /// Number of lanes.
 pub const LANES: usize = 8;
 
 /// Eight values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lanes(pub [f32; LANES]);
+pub struct Lanes(f32x8);
 
 impl Lanes {
     /// All zero.
-    pub const ZERO: Lanes = Lanes([0.0; LANES]);
+    pub const ZERO: Lanes = Lanes(f32x8::ZERO);
 
     /// The same value in every lane.
     #[inline(always)]
     pub fn splat(x: f32) -> Lanes {
-        Lanes([x; LANES])
+        Lanes(f32x8::splat(x))
     }
 
     /// `f` of every lane's number.
     #[inline(always)]
     pub fn from_fn(f: impl Fn(usize) -> f32) -> Lanes {
-        Lanes(std::array::from_fn(f))
+        Lanes(f32x8::new(std::array::from_fn(f)))
     }
 
     /// The first eight of a slice.
@@ -33,48 +34,67 @@ impl Lanes {
     pub fn load(x: &[f32]) -> Lanes {
         let mut lanes = [0.0; LANES];
         lanes.copy_from_slice(&x[..LANES]);
-        Lanes(lanes)
+        Lanes(f32x8::new(lanes))
     }
 
-    /// `f` of every lane.
+    /// All values.
+    #[inline(always)]
+    pub fn to_array(self) -> [f32; LANES] {
+        self.0.to_array()
+    }
+
+    /// The value of one lane.
+    #[inline(always)]
+    pub fn lane(self, l: usize) -> f32 {
+        self.to_array()[l]
+    }
+
+    /// `f` of every lane, one by one.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Lanes {
-        Lanes(self.0.map(f))
-    }
-
-    #[inline(always)]
-    fn zip(self, o: Lanes, f: impl Fn(f32, f32) -> f32) -> Lanes {
-        Lanes(std::array::from_fn(|l| f(self.0[l], o.0[l])))
+        Lanes(f32x8::new(self.to_array().map(f)))
     }
 
     /// The smaller of each pair.
     #[inline(always)]
     pub fn min(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| if a < b { a } else { b })
+        self.less(o, self, o)
     }
 
     /// The larger of each pair.
     #[inline(always)]
     pub fn max(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| if a > b { a } else { b })
+        o.less(self, self, o)
     }
 
     /// In each lane `x` where `self` is less than `o`, else `y`.
     #[inline(always)]
     pub fn less(self, o: Lanes, x: Lanes, y: Lanes) -> Lanes {
-        Lanes::from_fn(|l| if self.0[l] < o.0[l] { x.0[l] } else { y.0[l] })
+        Lanes(self.0.simd_lt(o.0).bitselect(x.0, y.0))
+    }
+
+    /// A bit for each lane that is at most the other's, the lowest for the first one.
+    #[inline(always)]
+    pub fn at_most(self, o: Lanes) -> u32 {
+        self.0.simd_le(o.0).to_bitmask()
+    }
+
+    /// 1 with the sign of each lane.
+    #[inline(always)]
+    pub fn sign(self) -> Lanes {
+        Lanes(self.0.bitand(f32x8::splat(-0.0)).bitor(f32x8::splat(1.0)))
     }
 
     /// Square roots.
     #[inline(always)]
     pub fn sqrt(self) -> Lanes {
-        self.map(f32::sqrt)
+        Lanes(self.0.sqrt())
     }
 
     /// The sum of the lanes, in order.
     #[inline(always)]
     pub fn sum(self) -> f32 {
-        self.0.iter().sum()
+        self.to_array().iter().sum()
     }
 }
 
@@ -82,7 +102,7 @@ impl Add for Lanes {
     type Output = Lanes;
     #[inline(always)]
     fn add(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| a + b)
+        Lanes(self.0 + o.0)
     }
 }
 
@@ -97,7 +117,7 @@ impl Sub for Lanes {
     type Output = Lanes;
     #[inline(always)]
     fn sub(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| a - b)
+        Lanes(self.0 - o.0)
     }
 }
 
@@ -105,7 +125,7 @@ impl Mul for Lanes {
     type Output = Lanes;
     #[inline(always)]
     fn mul(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| a * b)
+        Lanes(self.0 * o.0)
     }
 }
 
@@ -113,22 +133,24 @@ impl Div for Lanes {
     type Output = Lanes;
     #[inline(always)]
     fn div(self, o: Lanes) -> Lanes {
-        self.zip(o, |a, b| a / b)
+        Lanes(self.0 / o.0)
     }
 }
 
 /// Clears `out` and appends to it the places `0..n` for which the lanes that `value` gives for a block of places, by its
-/// first one, are at most `limit`. Without branches, which no processor could predict here.
+/// first one, are at most `limit`.
 #[inline(always)]
 pub fn places_within(n: usize, limit: f32, value: impl Fn(usize) -> Lanes, out: &mut Vec<u32>) {
+    let limit = Lanes::splat(limit);
     out.clear();
-    out.resize(n.next_multiple_of(LANES), 0);
-    let mut found = 0;
     for start in (0..n).step_by(LANES) {
-        for (l, x) in value(start).0.into_iter().enumerate() {
-            out[found] = (start + l) as u32;
-            found += usize::from(x <= limit && start + l < n);
+        let mut within = value(start).at_most(limit);
+        if n - start < LANES {
+            within &= (1 << (n - start)) - 1;
+        }
+        while within != 0 {
+            out.push(start as u32 + within.trailing_zeros());
+            within &= within - 1;
         }
     }
-    out.truncate(found);
 }

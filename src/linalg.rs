@@ -175,9 +175,9 @@ mod tests {
             }
             let (value, axis) = least_axis(m.map(|x| Lanes::splat(x as f32)));
             let axis = DVec3::new(
-                axis[0].0[3].into(),
-                axis[1].0[3].into(),
-                axis[2].0[3].into(),
+                axis[0].lane(3).into(),
+                axis[1].lane(3).into(),
+                axis[2].lane(3).into(),
             );
             let trace = m[0] + m[3] + m[5];
             if width == 0.0 {
@@ -185,7 +185,7 @@ mod tests {
             } else {
                 let share = thickness * thickness / trace;
                 assert!(
-                    (f64::from(value.0[0]) - share).abs() < 1e-5,
+                    (f64::from(value.lane(0)) - share).abs() < 1e-5,
                     "{value:?} {share}"
                 );
                 assert!(axis.dot(frame[0]).abs() > 1.0 - 1e-5, "{axis} {}", frame[0]);

@@ -195,7 +195,8 @@ impl Neighborhood {
     /// The distance by sorting, for what no scaling finds.
     fn select(&mut self, k: usize) -> f32 {
         self.sorted.clear();
-        self.sorted.extend(self.squares.iter().flat_map(|s| s.0));
+        self.sorted
+            .extend(self.squares.iter().flat_map(|s| s.to_array()));
         self.sorted.truncate(self.around.len());
         let Some(k) = k.min(self.sorted.len()).checked_sub(1) else {
             return 0.0;
@@ -267,7 +268,7 @@ mod tests {
                 let expected = (0..points.len()).filter(|&i| within(&tree.points[i]));
                 assert_eq!(near, expected.collect::<Vec<_>>());
                 for (l, i) in block.range.clone().enumerate() {
-                    let lane = block.at.map(|x| x.0[l]);
+                    let lane = block.at.map(|x| x.lane(l));
                     assert_eq!(lane, tree.points[i].to_array());
                 }
             }

@@ -257,32 +257,50 @@ impl Octree {
 
     /// The nearest point.
     pub fn nearest(&self, q: Vec3) -> Neighbor {
-        let none = Neighbor {
+        let mut best = Neighbor {
             distance2: f32::INFINITY,
             index: 0,
         };
-        self.nearer_than(none, q)
-    }
-
-    /// The nearest point, where it is nearer than `found`; else `found`.
-    pub fn nearer_than(&self, found: Neighbor, q: Vec3) -> Neighbor {
-        let mut best = found;
         self.nearest_below(0, q, &mut best);
         best
+    }
+
+    /// The nearest point, where it is nearer than `found`; else `found`. With a near guess little is looked at.
+    pub fn nearer_than(&self, found: Neighbor, q: Vec3) -> Neighbor {
+        let mut best = found;
+        self.improve_below(0, q, &mut best);
+        best
+    }
+
+    fn improve_below(&self, id: usize, q: Vec3, best: &mut Neighbor) {
+        let node = &self.nodes[id];
+        if node.is_leaf() {
+            self.nearest_of(node, q, best);
+            return;
+        }
+        for child in node.child_ids() {
+            if self.nodes[child].distance2(q) < best.distance2 {
+                self.improve_below(child, q, best);
+            }
+        }
+    }
+
+    fn nearest_of(&self, leaf: &Node, q: Vec3, best: &mut Neighbor) {
+        for i in leaf.range() {
+            let distance2 = self.points[i].distance_squared(q);
+            if distance2 < best.distance2 {
+                *best = Neighbor {
+                    distance2,
+                    index: i as u32,
+                };
+            }
+        }
     }
 
     fn nearest_below(&self, id: usize, q: Vec3, best: &mut Neighbor) {
         let node = &self.nodes[id];
         if node.is_leaf() {
-            for i in node.range() {
-                let distance2 = self.points[i].distance_squared(q);
-                if distance2 < best.distance2 {
-                    *best = Neighbor {
-                        distance2,
-                        index: i as u32,
-                    };
-                }
-            }
+            self.nearest_of(node, q, best);
             return;
         }
         for &(d2, child) in self.nearer(node, q, best.distance2).children() {

@@ -92,7 +92,7 @@ fn planes_of(block: &Block, radius: f32, hood: &Neighborhood) -> impl Iterator<I
         .enumerate()
         .take(block.range.len())
         .map(move |(l, plane)| {
-            if weight.0[l] - 1.0 < FEW {
+            if weight.lane(l) - 1.0 < FEW {
                 Plane::default()
             } else {
                 plane
@@ -152,8 +152,8 @@ fn fit(sums: [Lanes; 10], radius: f32) -> impl Iterator<Item = Plane> {
     let disc = Lanes::splat(std::f32::consts::PI / 3.0 * radius * radius);
     let spacing = (disc * inverse).sqrt();
     (0..LANES).map(move |l| Plane {
-        spacing: spacing.0[l],
-        normal: Vec3::new(normal[0].0[l], normal[1].0[l], normal[2].0[l]),
-        variation: variation.0[l],
+        spacing: spacing.lane(l),
+        normal: Vec3::from_array(normal.map(|n| n.lane(l))),
+        variation: variation.lane(l),
     })
 }

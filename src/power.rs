@@ -3,7 +3,9 @@
 //! For `m` of 2, 1.5 and 1.25 the exponents of eq. 5, `1/(m-1)`, are 1, 2 and 4, and `u^m` needs square roots only;
 //! any other fuzzifier takes `libm`.
 
-/// The powers that one fuzzifier asks for, in single or double precision.
+use crate::lanes::Lanes;
+
+/// The powers that one fuzzifier asks for, of single values in double precision or of lanes.
 pub trait Power<T>: Copy {
     /// `r^(1/(m-1))` of a ratio of squared distances (eq. 5).
     fn share(self, ratio: T) -> T;
@@ -115,17 +117,26 @@ macro_rules! powers {
                 u * u.sqrt().sqrt()
             }
         }
-
-        impl Power<$float> for AnyPower {
-            fn share(self, ratio: $float) -> $float {
-                libm::pow(f64::from(ratio), self.exponent) as $float
-            }
-            fn raise(self, u: $float) -> $float {
-                libm::pow(f64::from(u), self.m) as $float
-            }
-        }
     };
 }
 
-powers!(f32);
 powers!(f64);
+powers!(Lanes);
+
+impl Power<f64> for AnyPower {
+    fn share(self, ratio: f64) -> f64 {
+        libm::pow(ratio, self.exponent)
+    }
+    fn raise(self, u: f64) -> f64 {
+        libm::pow(u, self.m)
+    }
+}
+
+impl Power<Lanes> for AnyPower {
+    fn share(self, ratio: Lanes) -> Lanes {
+        ratio.map(|r| Power::<f64>::share(self, f64::from(r)) as f32)
+    }
+    fn raise(self, u: Lanes) -> Lanes {
+        u.map(|u| Power::<f64>::raise(self, f64::from(u)) as f32)
+    }
+}

@@ -38,7 +38,7 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
         let mut around = Vec::with_capacity(cell.len());
         for block in Block::all(&index.points, cell) {
             let radius = Lanes::splat(RING) * block.lanes(spacing);
-            let reach = radius.0.into_iter().fold(0.0, f32::max);
+            let reach = radius.to_array().into_iter().fold(0.0, f32::max);
             if !together {
                 scratch.hood.gather_box(index, (block.lo, block.hi), reach);
             }
@@ -47,7 +47,7 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
             for (l, i) in block.range.clone().enumerate() {
                 let mut own = found[l];
                 // Seen for sure is what is within the lane's own radius.
-                if own.apart2 > radius.0[l] * radius.0[l] {
+                if own.apart2 > radius.lane(l) * radius.lane(l) {
                     index.knn(index.points[i], 2, &mut scratch.found);
                     own.apart2 = scratch.found.get(1).map_or(f32::INFINITY, |n| n.distance2);
                 }
@@ -76,7 +76,7 @@ fn block_of(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Around; LANES
             if block.range.start + l == j {
                 f32::INFINITY
             } else {
-                length2.0[l]
+                length2.lane(l)
             }
         }));
         let root = (one - length2 * scale * scale).max(Lanes::ZERO);
@@ -88,7 +88,7 @@ fn block_of(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Around; LANES
     let [x, y, z, w] = sums;
     let [x, y, z] = [x, y, z].map(|sum| sum * scale / w);
     std::array::from_fn(|l| Around {
-        apart2: apart2.0[l],
-        mean: Vec3::new(x.0[l], y.0[l], z.0[l]),
+        apart2: apart2.lane(l),
+        mean: Vec3::new(x.lane(l), y.lane(l), z.lane(l)),
     })
 }
