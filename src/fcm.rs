@@ -15,9 +15,10 @@
 //! Euclidean. Memberships are formed from `(d_min / d_i)²`, at most 1, so that no exponent and no distance overflows.
 //!
 //! Cost: one sweep touches every pair of point and centre once, and both updates U (eq. 5) and gathers the sums of
-//! the next centres (eq. 2). Lanes run over points, so that compilers vectorise the inner loops.
+//! the next centres (eq. 2). Lanes run over points.
 
 use glam::{DVec3, Vec3};
+use wide::f64x4;
 
 use crate::linalg::sym_eigen;
 use crate::params::Norm;
@@ -90,10 +91,10 @@ pub struct Fcm {
     /// Memberships, row i of `stride()` points after row i-1.
     u: Vec<f64>,
     /// Σ w u^m and Σ w u^m x of each centre, a lane each.
-    sums: Vec<[[f64; LANES]; 4]>,
+    sums: Vec<[f64x4; 4]>,
     /// One block's squared distances to, then its shares in, every centre.
-    distance: Vec<[f64; LANES]>,
-    share: Vec<[f64; LANES]>,
+    distance: Vec<f64x4>,
+    share: Vec<f64x4>,
 }
 
 impl Fcm {
@@ -155,9 +156,9 @@ impl Fcm {
         };
         self.u.clear();
         self.u.resize(clusters * stride, 0.0);
-        self.sums.resize(clusters, [[0.0; LANES]; 4]);
-        self.distance.resize(clusters, [0.0; LANES]);
-        self.share.resize(clusters, [0.0; LANES]);
+        self.sums.resize(clusters, [f64x4::ZERO; 4]);
+        self.distance.resize(clusters, f64x4::ZERO);
+        self.share.resize(clusters, f64x4::ZERO);
         self.centers.clear();
         match start {
             Start::Centers(centers) => {
@@ -205,7 +206,7 @@ impl Fcm {
         }
     }
 
-    fn iterate<P: Power<f64>>(&mut self, power: P, params: &FcmParams) -> Prototypes {
+    fn iterate<P: Power<f64x4>>(&mut self, power: P, params: &FcmParams) -> Prototypes {
         let mut iterations = 0;
         let (mut objective, mut change);
         loop {
@@ -226,86 +227,69 @@ impl Fcm {
     }
 
     /// One pass over all pairs: U from the centres (eq. 5), the sums of eq. 2, `J` (eq. 1) and the change (eq. 6).
-    fn sweep<P: Power<f64>>(&mut self, power: P) -> (f64, f64) {
+    fn sweep<P: Power<f64x4>>(&mut self, power: P) -> (f64, f64) {
         let stride = self.stride();
-        for sums in &mut self.sums {
-            *sums = [[0.0; LANES]; 4];
-        }
-        let mut objective = [0.0; LANES];
-        let mut change = [0.0f64; LANES];
+        self.sums.fill([f64x4::ZERO; 4]);
+        let mut objective = f64x4::ZERO;
+        let mut change = f64x4::ZERO;
         for block in (0..stride).step_by(LANES) {
-            let lanes = |v: &[f64]| -> [f64; LANES] { std::array::from_fn(|l| v[block + l]) };
-            let [x, y, z] = [lanes(&self.x[0]), lanes(&self.x[1]), lanes(&self.x[2])];
-            let weight = lanes(&self.weight);
+            let [x, y, z] = [0, 1, 2].map(|axis| load(&self.x[axis][block..]));
+            let weight = load(&self.weight[block..]);
 
-            let mut nearest = [f64::INFINITY; LANES];
+            let mut nearest = f64x4::splat(f64::INFINITY);
             for (distance, v) in self.distance.iter_mut().zip(&self.centers) {
-                for l in 0..LANES {
-                    let (dx, dy, dz) = (x[l] - v.x, y[l] - v.y, z[l] - v.z);
-                    distance[l] = dx * dx + dy * dy + dz * dz;
-                    nearest[l] = if distance[l] < nearest[l] {
-                        distance[l]
-                    } else {
-                        nearest[l]
-                    };
-                }
+                let [dx, dy, dz] = [x - v.x, y - v.y, z - v.z];
+                *distance = dx * dx + dy * dy + dz * dz;
+                nearest = distance.simd_lt(nearest).bitselect(*distance, nearest);
             }
-            let mut total = [0.0; LANES];
+            let mut total = f64x4::ZERO;
             for (share, distance) in self.share.iter_mut().zip(&self.distance) {
-                for l in 0..LANES {
-                    share[l] = power.share(nearest[l] / distance[l]);
-                    total[l] += share[l];
-                }
+                *share = power.share(nearest / *distance);
+                total += *share;
             }
-            if nearest.contains(&0.0) {
-                self.share_zero_distance(&nearest, &mut total);
+            if nearest.simd_eq(f64x4::ZERO).any() {
+                total = self.share_zero_distance(nearest, total);
             }
-            let mut most = [0.0; LANES];
-            let inverse = total.map(|total| 1.0 / total);
+            let inverse = f64x4::ONE / total;
+            let mut most = f64x4::ZERO;
             for (i, sums) in self.sums.iter_mut().enumerate() {
-                let (share, distance) = (&self.share[i], &self.distance[i]);
+                let u = self.share[i] * inverse;
                 let row = &mut self.u[i * stride + block..][..LANES];
-                for l in 0..LANES {
-                    let u = share[l] * inverse[l];
-                    let moved = (u - row[l]).abs();
-                    most[l] = if moved > most[l] { moved } else { most[l] };
-                    row[l] = u;
-                    let w = weight[l] * power.raise(u);
-                    objective[l] += w * distance[l];
-                    sums[0][l] += w;
-                    sums[1][l] += w * x[l];
-                    sums[2][l] += w * y[l];
-                    sums[3][l] += w * z[l];
+                let moved = (u - load(row)).abs();
+                most = most.simd_lt(moved).bitselect(moved, most);
+                row.copy_from_slice(&u.to_array());
+                let w = weight * power.raise(u);
+                objective += w * self.distance[i];
+                for (sum, term) in sums.iter_mut().zip([w, w * x, w * y, w * z]) {
+                    *sum += term;
                 }
             }
             // Padding has weight 0 and no say in the change.
-            for l in 0..LANES {
-                if weight[l] > 0.0 {
-                    change[l] = change[l].max(most[l]);
-                }
-            }
+            let counted = f64x4::ZERO.simd_lt(weight) & change.simd_lt(most);
+            change = counted.bitselect(most, change);
         }
-        (
-            objective.iter().sum(),
-            change.iter().fold(0.0, |a, &b| a.max(b)),
-        )
+        let largest = change.to_array().into_iter().fold(0.0, f64::max);
+        (objective.to_array().iter().sum(), largest)
     }
 
     /// The second case of eq. 5: points with a non-empty `I_k` (eq. 3) belong to those centres alone.
-    fn share_zero_distance(&mut self, nearest: &[f64; LANES], total: &mut [f64; LANES]) {
-        for l in (0..LANES).filter(|&l| nearest[l] == 0.0) {
-            total[l] = 0.0;
-            for (share, distance) in self.share.iter_mut().zip(&self.distance) {
-                share[l] = if distance[l] == 0.0 { 1.0 } else { 0.0 };
-                total[l] += share[l];
-            }
+    fn share_zero_distance(&mut self, nearest: f64x4, total: f64x4) -> f64x4 {
+        let zero = nearest.simd_eq(f64x4::ZERO);
+        let mut count = f64x4::ZERO;
+        for (share, distance) in self.share.iter_mut().zip(&self.distance) {
+            let at = distance
+                .simd_eq(f64x4::ZERO)
+                .bitselect(f64x4::ONE, f64x4::ZERO);
+            count += at;
+            *share = zero.bitselect(at, *share);
         }
+        zero.bitselect(count, total)
     }
 
     /// Eq. 2. A centre to which no point belongs any more (m near 1) stays where it is.
     fn update_centers(&mut self) {
         for (center, sums) in self.centers.iter_mut().zip(&self.sums) {
-            if let Some(mean) = weighted_mean(sums.map(|lanes| lanes.iter().sum())) {
+            if let Some(mean) = weighted_mean(sums.map(|sum| sum.to_array().iter().sum())) {
                 *center = mean;
             }
         }
@@ -314,6 +298,14 @@ impl Fcm {
     fn restore(&self, v: DVec3) -> DVec3 {
         self.origin + self.back[0] * v.x + self.back[1] * v.y + self.back[2] * v.z
     }
+}
+
+/// The first four of a slice.
+#[inline(always)]
+fn load(x: &[f64]) -> f64x4 {
+    let mut lanes = [0.0; LANES];
+    lanes.copy_from_slice(&x[..LANES]);
+    f64x4::new(lanes)
 }
 
 /// Validity index χ (eq. 7) from the objective, which is its numerator: small is good.

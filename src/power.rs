@@ -3,6 +3,8 @@
 //! For `m` of 2, 1.5 and 1.25 the exponents of eq. 5, `1/(m-1)`, are 1, 2 and 4, and `u^m` needs square roots only;
 //! any other fuzzifier takes `libm`.
 
+use wide::f64x4;
+
 use crate::lanes::Lanes;
 
 /// The powers that one fuzzifier asks for, of single values in double precision or of lanes.
@@ -121,6 +123,7 @@ macro_rules! powers {
 }
 
 powers!(f64);
+powers!(f64x4);
 powers!(Lanes);
 
 impl Power<f64> for AnyPower {
@@ -138,5 +141,14 @@ impl Power<Lanes> for AnyPower {
     }
     fn raise(self, u: Lanes) -> Lanes {
         u.map(|u| Power::<f64>::raise(self, f64::from(u)) as f32)
+    }
+}
+
+impl Power<f64x4> for AnyPower {
+    fn share(self, ratio: f64x4) -> f64x4 {
+        f64x4::new(ratio.to_array().map(|r| Power::<f64>::share(self, r)))
+    }
+    fn raise(self, u: f64x4) -> f64x4 {
+        f64x4::new(u.to_array().map(|u| Power::<f64>::raise(self, u)))
     }
 }
