@@ -3,7 +3,6 @@
 
 use glam::Vec3;
 
-use crate::clusters::Shares;
 use crate::features::Features;
 use crate::octree::Octree;
 use crate::par;
@@ -23,14 +22,10 @@ const ASIDE: f32 = 0.6;
 pub(crate) fn restore(
     tree: &Octree,
     (points, features): (&[Vec3], &Features),
-    (shares, members): (&[Shares], &Members),
+    members: &Members,
     around: &[Around],
     placed: &mut [Placed],
 ) {
-    let own = |i: usize| {
-        let all = members.of(i).iter().map(|&(k, _)| k as usize);
-        all.filter(move |&k| shares[k].center[0] as usize == i)
-    };
     let unbalanced: Vec<usize> = (0..placed.len())
         .filter(|&i| around[i].mean.length() > UNBALANCED)
         .collect();
@@ -42,7 +37,7 @@ pub(crate) fn restore(
             outermost(
                 tree,
                 (points, features),
-                own(i),
+                members.own(i),
                 &placed[i],
                 -around[i].mean,
             )
@@ -59,7 +54,7 @@ pub(crate) fn restore(
 fn outermost(
     tree: &Octree,
     (points, features): (&[Vec3], &Features),
-    members: impl Iterator<Item = usize>,
+    members: impl Iterator<Item = u32>,
     placed: &Placed,
     outward: Vec3,
 ) -> Option<Vec3> {
@@ -73,6 +68,7 @@ fn outermost(
     let aside = normal.cross(outward);
     let mut farthest: Option<(f32, usize)> = None;
     for k in members {
+        let k = k as usize;
         let d = points[k] - position;
         let way = d.dot(outward);
         if d.dot(aside).abs() < ASIDE * spacing && farthest.is_none_or(|(most, _)| way > most) {

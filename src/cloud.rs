@@ -24,18 +24,18 @@ pub struct Frame {
 
 impl Frame {
     /// The frame of these points, or the index of the first coordinate that is not finite.
-    fn of(positions: &[f64]) -> std::result::Result<Frame, usize> {
-        if let Some(i) = positions.iter().position(|x| !x.is_finite()) {
+    fn of<T: Copy + Into<f64>>(positions: &[T]) -> std::result::Result<Frame, usize> {
+        if let Some(i) = positions.iter().position(|&x| !x.into().is_finite()) {
             return Err(i);
         }
-        let all = Frame::around(positions.chunks_exact(3));
+        let all = Frame::around(triples(positions));
         let most = Frame::around_most(positions);
         let far_out = |frame: &Frame| FAR_OUT.contains(&(all.diagonal / frame.diagonal));
         Ok(most.filter(far_out).unwrap_or(all))
     }
 
     /// The frame of the bounding box.
-    fn around<'a>(points: impl Iterator<Item = &'a [f64]>) -> Frame {
+    fn around(points: impl Iterator<Item = [f64; 3]>) -> Frame {
         let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for p in points {
             for a in 0..3 {
@@ -58,25 +58,21 @@ impl Frame {
 
     /// The frame of the points near most of them; `None` where that would leave out more than [`A_FEW`], or where most are at
     /// one place.
-    fn around_most(positions: &[f64]) -> Option<Frame> {
+    fn around_most<T: Copy + Into<f64>>(positions: &[T]) -> Option<Frame> {
         let count = positions.len() / 3;
         let stride = count.div_ceil(SAMPLE);
-        let sides = [0, 1, 2].map(|a| {
-            let mut x: Vec<f64> = positions[a..].iter().step_by(3 * stride).copied().collect();
+        let mut corners = [[0.0; 3]; 2];
+        for a in 0..3 {
+            let mut x: Vec<f64> = triples(positions).step_by(stride).map(|p| p[a]).collect();
             x.sort_unstable_by(f64::total_cmp);
             let few = (x.len() as f64 * A_FEW).ceil() as usize;
-            [x.get(few).copied(), x.iter().nth_back(few).copied()]
-        });
-        let mut corners = [[0.0; 3]; 2];
-        for (a, side) in sides.into_iter().enumerate() {
-            for (corner, x) in corners.iter_mut().zip(side) {
-                corner[a] = x?;
-            }
+            corners[0][a] = *x.get(few)?;
+            corners[1][a] = *x.iter().nth_back(few)?;
         }
-        let inner = Frame::around(corners.iter().map(|c| c.as_slice()));
+        let inner = Frame::around(corners.into_iter());
         let near =
-            |p: &&[f64]| (0..3).all(|a| (p[a] - inner.center[a]).abs() < 10.0 * inner.diagonal);
-        let near = || positions.chunks_exact(3).filter(near);
+            |p: &[f64; 3]| (0..3).all(|a| (p[a] - inner.center[a]).abs() < 10.0 * inner.diagonal);
+        let near = || triples(positions).filter(near);
         let most = (count as f64 * (1.0 - A_FEW)).ceil() as usize;
         (corners[0] != corners[1] && near().count() >= most).then(|| Frame::around(near()))
     }
@@ -126,6 +122,18 @@ impl Cloud {
     /// # Errors
     /// [`Error::EmptyCloud`], [`Error::BadLength`] (not a multiple of 3), [`Error::NonFinite`] (the point's index).
     pub fn from_f64(positions: &[f64]) -> Result<Cloud> {
+        Cloud::from_positions(positions)
+    }
+
+    /// [`Cloud::from_f64`] for single precision.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn from_f32(positions: &[f32]) -> Result<Cloud> {
+        Cloud::from_positions(positions)
+    }
+
+    fn from_positions<T: Copy + Into<f64>>(positions: &[T]) -> Result<Cloud> {
         if !positions.len().is_multiple_of(3) {
             return Err(Error::BadLength {
                 array: "positions".into(),
@@ -139,28 +147,16 @@ impl Cloud {
         let frame = Frame::of(positions).map_err(|i| Error::NonFinite {
             array: "positions".into(),
             index: i / 3,
-            found: positions[i],
+            found: positions[i].into(),
         })?;
-        let points = positions
-            .chunks_exact(3)
-            .map(|p| frame.to_unit([p[0], p[1], p[2]]))
-            .collect();
         Ok(Cloud {
-            points,
+            points: triples(positions).map(|p| frame.to_unit(p)).collect(),
             frame,
             colors: None,
             normals: None,
             attributes: Vec::new(),
             origin: None,
         })
-    }
-
-    /// [`Cloud::from_f64`] for single precision.
-    ///
-    /// # Errors
-    /// The same.
-    pub fn from_f32(positions: &[f32]) -> Result<Cloud> {
-        Cloud::from_f64(&positions.iter().map(|&x| x as f64).collect::<Vec<_>>())
     }
 
     /// Number of points, at least 1.
@@ -275,6 +271,12 @@ impl Cloud {
             found,
         })
     }
+}
+
+fn triples<T: Copy + Into<f64>>(positions: &[T]) -> impl Iterator<Item = [f64; 3]> + Clone {
+    positions
+        .chunks_exact(3)
+        .map(|p| [p[0].into(), p[1].into(), p[2].into()])
 }
 
 fn check_finite(array: &str, values: &[f32], each: usize) -> Result<()> {

@@ -18,7 +18,7 @@ use crate::lanes::{LANES, Lanes, places_within};
 use crate::octree::Octree;
 use crate::par;
 use crate::power::{Fuzzifier, Power};
-use crate::progress::{Progress, Stage};
+use crate::progress::{Part, Progress, Stage};
 
 /// How far from the box of a cell, or of a block of its points, centres still count, in wanted spacings. Every point of the box has its nearest centre
 /// within about 0.7 spacings; at twice that a centre's share is (1/2)^(2/(m-1)), 6 % at m = 1.5.
@@ -128,7 +128,7 @@ pub fn cluster(
     while iterations < settling.max_iterations {
         progress.update(
             Stage::Cluster,
-            iterations as f32 / settling.max_iterations as f32,
+            0.9 * iterations as f32 / settling.max_iterations as f32,
         )?;
         // The start is uneven; after two sweeps centres hardly leave a cell's reach any more.
         if iterations == 0 || iterations == 2 {
@@ -147,8 +147,8 @@ pub fn cluster(
     }
     let index = gather(&mut cells, &centers);
     let fuzzifier = Fuzzifier::new(settling.fuzzifier);
-    let shares = par::map(cells.len(), Scratch::default, |i, scratch| {
-        let cell = &cells[i];
+    let share = |i: usize, scratch: &mut Scratch| {
+        let cell: &Cell = &cells[i];
         scratch.load(samples, cell, &centers);
         let mut shares = Vec::with_capacity(cell.range.len());
         for start in cell.range.clone().step_by(LANES) {
@@ -159,10 +159,19 @@ pub fn cluster(
             }
         }
         shares
-    });
+    };
+    let mut last = Part::new(progress, 0.9..1.0);
+    let shares = par::flat_map_progress(
+        cells.len(),
+        samples.points.len(),
+        20.0,
+        (Stage::Cluster, &mut last),
+        Scratch::default,
+        share,
+    )?;
     Ok(Clusters {
         centers,
-        shares: shares.concat(),
+        shares,
         index,
         iterations,
     })
@@ -425,6 +434,12 @@ impl Scratch {
 }
 
 impl Shares {
+    /// Centres and memberships above 0.
+    pub fn used(&self) -> impl Iterator<Item = (u32, f32)> {
+        let all = self.center.into_iter().zip(self.u);
+        all.filter(|&(_, u)| u > 0.0)
+    }
+
     /// The centres that have a share; the nearest one in unused places.
     pub fn near(&self) -> [u32; SHARES] {
         std::array::from_fn(|j| self.center[if self.u[j] > 0.0 { j } else { 0 }])

@@ -250,18 +250,16 @@ impl Groups {
             // Where all points are equal any spacing will do, but not none.
             least.max(SMALLEST)
         };
-        let spacing = par::map(
+        par::flat_map(
             rings.len().div_ceil(SLICE),
+            tree.points.len(),
             || (),
             |slice, ()| {
                 let groups = slice * SLICE..((slice + 1) * SLICE).min(rings.len());
                 let points = groups.flat_map(|g| self.ranges[g].clone().map(move |k| (k, g)));
-                points
-                    .map(|(k, g)| of(tree.points[k], &rings[g]))
-                    .collect::<Vec<f32>>()
+                points.map(|(k, g)| of(tree.points[k], &rings[g])).collect()
             },
-        );
-        spacing.concat()
+        )
     }
 }
 

@@ -10,7 +10,7 @@
 //!    By that distance noisy points are moved.
 
 use crate::error::Result;
-use crate::filter::{Filter, Step};
+use crate::filter::Filter;
 use crate::neighborhood::CELL;
 use crate::noise::{Scales, quantile};
 use crate::octree::Octree;
@@ -71,14 +71,15 @@ impl Features {
         let cells = tree.cut(|node| node.range().len() <= CELL);
         let scales = Scales::measure(tree);
         let mut part = Part::new(progress, 0.0..0.4);
-        let planes: Vec<Plane> = par::map_progress(
+        let n = tree.points.len();
+        let planes: Vec<Plane> = par::flat_map_progress(
             cells.len(),
+            n,
             20.0,
             (Stage::Features, &mut part),
             Planes::default,
             |i, planes| planes.cell(tree, cells[i].clone(), scales.plane),
-        )?
-        .concat();
+        )?;
         let mut features = Features {
             spacing: planes.iter().map(|p| p.spacing).collect(),
             normals: planes.iter().map(|p| p.normal).collect(),
@@ -87,21 +88,33 @@ impl Features {
             residual: Vec::new(),
             noise: scales.noise,
         };
-        let mut pass = |from: f32, to: f32, features: &Features, step: Step| {
-            let mut part = Part::new(part.progress, from..to);
-            par::map_progress(
-                cells.len(),
-                20.0,
-                (Stage::Features, &mut part),
-                Filter::default,
-                |i, filter| filter.cell(tree, features, cells[i].clone(), step),
-            )
-        };
-        let filtered = pass(0.4, 0.7, &features, Step::Normals)?;
-        features.normals = filtered.iter().flatten().map(|f| f.normal).collect();
-        let filtered = pass(0.7, 1.0, &features, Step::Offsets)?;
-        features.residual = filtered.iter().flatten().map(|f| f.offset).collect();
-        features.curvature = filtered.iter().flatten().map(|f| f.curvature).collect();
+        drop(planes);
+        let mut part = Part::new(progress, 0.4..0.7);
+        features.normals = par::flat_map_progress(
+            cells.len(),
+            n,
+            20.0,
+            (Stage::Features, &mut part),
+            Filter::default,
+            |i, filter| {
+                let cell = cells[i].clone();
+                filter.cell(tree, &features, cell, |sums, denoise| sums.normals(denoise))
+            },
+        )?;
+        let mut part = Part::new(progress, 0.7..1.0);
+        let offsets = par::flat_map_progress(
+            cells.len(),
+            n,
+            20.0,
+            (Stage::Features, &mut part),
+            Filter::default,
+            |i, filter| {
+                let cell = cells[i].clone();
+                filter.cell(tree, &features, cell, |sums, denoise| sums.offsets(denoise))
+            },
+        )?;
+        features.residual = offsets.iter().map(|o| o.residual).collect();
+        features.curvature = offsets.iter().map(|o| o.curvature).collect();
         Ok(features)
     }
 

@@ -18,18 +18,10 @@ const NEAR_CREASE: Range<f32> = 0.3..0.6;
 /// What a clean surface is allowed in place of noise, in spacings: the filter's formula leaves third-order terms.
 const BEND: f32 = 0.05;
 
-/// What a pass of the filter finds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Step {
-    Normals,
-    Offsets,
-}
-
-/// Result of the filter at one point.
+/// Distance of one point to the surface, and how that bends.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Filtered {
-    pub(crate) normal: Vec3,
-    pub(crate) offset: f32,
+pub(crate) struct Offset {
+    pub(crate) residual: f32,
     pub(crate) curvature: f32,
 }
 
@@ -41,7 +33,7 @@ pub(crate) struct Filter {
 }
 
 /// One block with the scales of its sums.
-struct Sums<'a> {
+pub(crate) struct Sums<'a> {
     features: &'a Features,
     block: &'a Block,
     hood: &'a Neighborhood,
@@ -70,14 +62,15 @@ struct Pair {
 }
 
 impl Filter {
-    /// One pass over the points `range`, which lie close together.
-    pub(crate) fn cell(
+    /// One pass over the points `range`, which lie close together: `of` makes of each block's sums what is wanted, and gets
+    /// how much is to be denoised.
+    pub(crate) fn cell<T>(
         &mut self,
         tree: &Octree,
         features: &Features,
         range: Range<usize>,
-        step: Step,
-    ) -> Vec<Filtered> {
+        of: impl Fn(&Sums, f32) -> [T; LANES],
+    ) -> Vec<T> {
         let mut filtered = Vec::with_capacity(range.len());
         let support = |block: &Block| {
             let scales = Scales::new(features.noise, typical_spacing(features, block));
@@ -95,13 +88,13 @@ impl Filter {
             if together {
                 self.cell.narrow(&block, support);
                 let sums = Sums::new(features, &block, &self.cell, support);
-                filtered.extend(sums.step(step, denoise));
+                filtered.extend(of(&sums, denoise).into_iter().take(block.range.len()));
             } else {
                 for i in block.range.clone() {
                     self.own.gather_at(tree, tree.points[i], support);
                     let block = Block::new(&tree.points, i..i + 1);
                     let sums = Sums::new(features, &block, &self.own, support);
-                    filtered.extend(sums.step(step, denoise));
+                    filtered.extend(of(&sums, denoise).into_iter().take(block.range.len()));
                 }
             }
         }
@@ -166,15 +159,8 @@ impl<'a> Sums<'a> {
         })
     }
 
-    fn step(&self, step: Step, denoise: f32) -> impl Iterator<Item = Filtered> {
-        let found = match step {
-            Step::Normals => self.normals(denoise),
-            Step::Offsets => self.offsets(denoise),
-        };
-        found.into_iter().take(self.block.range.len())
-    }
-
-    fn normals(&self, denoise: f32) -> [Filtered; LANES] {
+    /// The filtered normals, unit or zero.
+    pub(crate) fn normals(&self, denoise: f32) -> [Vec3; LANES] {
         let mut sums = [Lanes::ZERO; 5];
         for pair in self.pairs() {
             let any_side = pair.near * pair.sheet;
@@ -193,14 +179,12 @@ impl<'a> Sums<'a> {
             let crease = (refused - NEAR_CREASE.start) / (NEAR_CREASE.end - NEAR_CREASE.start);
             let filtered = Vec3::new(x[l], y[l], z[l]).normalize_or(n);
             let mix = denoise.max(crease.clamp(0.0, 1.0));
-            Filtered {
-                normal: n.lerp(filtered, mix).normalize_or(n),
-                ..Filtered::default()
-            }
+            n.lerp(filtered, mix).normalize_or(n)
         })
     }
 
-    fn offsets(&self, denoise: f32) -> [Filtered; LANES] {
+    /// How far the points are from the surface that the filtered normals make.
+    pub(crate) fn offsets(&self, denoise: f32) -> [Offset; LANES] {
         let mut sums = [Lanes::ZERO; 4];
         for pair in self.pairs() {
             let any_side = pair.near * pair.sheet;
@@ -217,9 +201,8 @@ impl<'a> Sums<'a> {
             }
         }
         let [total, offset, turn, way] = sums.map(Lanes::to_array);
-        std::array::from_fn(|l| Filtered {
-            normal: Vec3::ZERO,
-            offset: if total[l] > 0.0 {
+        std::array::from_fn(|l| Offset {
+            residual: if total[l] > 0.0 {
                 denoise * offset[l] / total[l]
             } else {
                 0.0

@@ -10,7 +10,7 @@
 
 use glam::Vec3;
 
-use crate::clusters::SHARES;
+use crate::clusters::{SHARES, Shares};
 use crate::error::Result;
 use crate::lanes::{LANES, Lanes};
 use crate::neighborhood::{Block, CELL, Neighborhood, bounds};
@@ -92,29 +92,29 @@ impl Patches {
     }
 }
 
-/// Distances of `points` to the surface; `near` as in [`Patches::distance`].
+/// Distances of `points`, which have these shares in the reduced points, to the surface.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
 pub fn cloud_distances(
     points: &[Vec3],
-    near: &[[u32; SHARES]],
+    shares: &[Shares],
     patches: &Patches,
     progress: &mut dyn Progress,
 ) -> Result<Vec<f32>> {
-    let distances = par::map_progress(
+    par::flat_map_progress(
         points.len().div_ceil(SLICE),
+        points.len(),
         40.0,
         (Stage::Report, progress),
         || (),
         |i, ()| {
             let end = ((i + 1) * SLICE).min(points.len());
             (i * SLICE..end)
-                .map(|k| patches.distance(points[k], near[k]))
-                .collect::<Vec<f32>>()
+                .map(|k| patches.distance(points[k], shares[k].near()))
+                .collect()
         },
-    )?;
-    Ok(distances.concat())
+    )
 }
 
 /// Points whose distances are measured in one go.

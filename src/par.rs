@@ -55,6 +55,45 @@ pub fn map_progress<S, T: Send>(
     Ok(out)
 }
 
+/// Lists that [`flat_map`] makes before it appends them.
+const LISTS: usize = 1024;
+
+/// [`map`] of lists that become one, which has `total` values; no second copy of them all exists at any time.
+pub fn flat_map<S, T: Send>(
+    n: usize,
+    total: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> Vec<T> + Sync + Send,
+) -> Vec<T> {
+    let mut out = Vec::with_capacity(total);
+    for start in (0..n).step_by(LISTS) {
+        for list in map(LISTS.min(n - start), &scratch, |i, s| f(start + i, s)) {
+            out.extend(list);
+        }
+    }
+    out
+}
+
+/// [`flat_map`] in slices, as [`map_progress`].
+pub fn flat_map_progress<S, T: Send>(
+    n: usize,
+    total: usize,
+    weight: f32,
+    (stage, progress): (Stage, &mut dyn Progress),
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> Vec<T> + Sync + Send,
+) -> Result<Vec<T>> {
+    let slice = ((20_000.0 / weight) as usize).max(1);
+    let mut out = Vec::with_capacity(total);
+    progress.update(stage, 0.0)?;
+    for start in (0..n).step_by(slice) {
+        let m = slice.min(n - start);
+        out.extend(flat_map(m, 0, &scratch, |i, s| f(start + i, s)));
+        progress.update(stage, (start + m) as f32 / n as f32)?;
+    }
+    Ok(out)
+}
+
 /// How many threads [`map`] uses.
 pub fn threads() -> usize {
     #[cfg(feature = "threads")]

@@ -121,7 +121,7 @@ pub fn reduce(
     let mut reduced = reduce::reduce(&input.cloud, tree, features, params, &mut clock)?;
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
-    let distances = cloud_distances(&tree.points, &reduced.near, &patches, &mut clock)?;
+    let distances = cloud_distances(&tree.points, &reduced.shares, &patches, &mut clock)?;
     let distance = DistanceStats::of(distances.into_iter().map(f64::from));
     let report = reduce_report(&input, &reduced, distance, &clock);
     input.restore(&mut reduced);

@@ -12,7 +12,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::cloud::{Attribute, Cloud};
-use crate::clusters::{SHARES, Shares};
+use crate::clusters::Shares;
 use crate::features::Features;
 use crate::linalg::sym_eigen;
 use crate::octree::{Neighbor, Octree};
@@ -32,44 +32,53 @@ const CREASE: Range<f64> = 0.02..0.08;
 /// four models that the bench does not use (2 % less than 0.5, no farther from the truth).
 const OUTWARD: f64 = 0.7;
 
-/// The members of every cluster: points, and their memberships.
+/// The members of every cluster.
 #[derive(Debug, Clone)]
-pub struct Members {
+pub struct Members<'a> {
+    shares: &'a [Shares],
+    /// Where the members of each centre start in `of`.
     first: Vec<u32>,
-    of: Vec<(u32, f32)>,
+    of: Vec<u32>,
 }
 
-impl Members {
+impl<'a> Members<'a> {
     /// Turns memberships by point into memberships by centre.
-    pub fn new(shares: &[Shares], centers: usize) -> Members {
+    pub fn new(shares: &'a [Shares], centers: usize) -> Members<'a> {
         let mut first = vec![0u32; centers + 1];
-        let used = |s: &Shares| {
-            (0..SHARES)
-                .map(|j| (s.center[j], s.u[j]))
-                .collect::<Vec<_>>()
-        };
-        for s in shares {
-            for (i, _) in used(s).into_iter().filter(|&(_, u)| u > 0.0) {
-                first[i as usize + 1] += 1;
-            }
+        for (i, _) in shares.iter().flat_map(Shares::used) {
+            first[i as usize + 1] += 1;
         }
         for i in 0..centers {
             first[i + 1] += first[i];
         }
         let mut next = first.clone();
-        let mut of = vec![(0, 0.0); first[centers] as usize];
+        let mut of = vec![0; first[centers] as usize];
         for (k, s) in shares.iter().enumerate() {
-            for (i, u) in used(s).into_iter().filter(|&(_, u)| u > 0.0) {
-                of[next[i as usize] as usize] = (k as u32, u);
+            for (i, _) in s.used() {
+                of[next[i as usize] as usize] = k as u32;
                 next[i as usize] += 1;
             }
         }
-        Members { first, of }
+        Members { shares, first, of }
     }
 
-    /// The members of centre `i`, in the octree's order.
-    pub fn of(&self, i: usize) -> &[(u32, f32)] {
-        &self.of[self.first[i] as usize..self.first[i + 1] as usize]
+    /// The members of centre `i`, in the octree's order, and their memberships.
+    pub fn of(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
+        let members = self.first[i] as usize..self.first[i + 1] as usize;
+        self.of[members].iter().map(move |&k| {
+            let mut used = self.shares[k as usize].used();
+            (
+                k,
+                used.find_map(|(c, u)| (c as usize == i).then_some(u))
+                    .unwrap_or(0.0),
+            )
+        })
+    }
+
+    /// Those that belong to centre `i` most.
+    pub fn own(&self, i: usize) -> impl Iterator<Item = u32> {
+        let all = self.of(i).map(|(k, _)| k);
+        all.filter(move |&k| self.shares[k as usize].center[0] as usize == i)
     }
 }
 
@@ -99,7 +108,7 @@ pub fn place(
         || (),
         |i, ()| {
             let mut sums = Sums::default();
-            for &(k, u) in members.of(i) {
+            for (k, u) in members.of(i) {
                 sums.add(points, features, k as usize, u, fuzzifier);
             }
             sums.place(centers[i], placement)
@@ -202,7 +211,7 @@ impl Sums {
 
 /// The input point nearest to a placed centre `i`, in the octree's order. Most often it is a member, so little is looked at.
 pub fn nearest(tree: &Octree, members: &Members, i: usize, p: Vec3) -> u32 {
-    let away = |&(k, _): &(u32, f32)| Neighbor {
+    let away = |(k, _): (u32, f32)| Neighbor {
         distance2: tree.points[k as usize].distance_squared(p),
         index: k,
     };
@@ -211,27 +220,20 @@ pub fn nearest(tree: &Octree, members: &Members, i: usize, p: Vec3) -> u32 {
         index: 0,
     };
     let nearer = |a: Neighbor, b: Neighbor| if b.distance2 < a.distance2 { b } else { a };
-    let member = members.of(i).iter().map(away).fold(none, nearer);
+    let member = members.of(i).map(away).fold(none, nearer);
     tree.nearer_than(member, p).index
 }
 
 /// Moves every placed point to an input point, no two to the same, and returns which (in the octree's order): the nearest
 /// of those that belong to the centre most, or, for a centre to which none does, the nearest that nobody took.
-pub fn snap(
-    tree: &Octree,
-    shares: &[Shares],
-    members: &Members,
-    placed: &mut [Placed],
-) -> Vec<u32> {
+pub fn snap(tree: &Octree, members: &Members, placed: &mut [Placed]) -> Vec<u32> {
     let away = |k: u32, p: Vec3| tree.points[k as usize].distance_squared(p);
-    let own = |i: usize| {
-        let mine = members.of(i).iter().map(|&(k, _)| k);
-        mine.filter(move |&k| shares[k as usize].center[0] as usize == i)
-    };
     let first: Vec<Option<u32>> = (0..placed.len())
         .map(|i| {
             let p = placed[i].position;
-            own(i).min_by(|&a, &b| away(a, p).total_cmp(&away(b, p)).then(a.cmp(&b)))
+            members
+                .own(i)
+                .min_by(|&a, &b| away(a, p).total_cmp(&away(b, p)).then(a.cmp(&b)))
         })
         .collect();
     let mut taken = vec![false; tree.points.len()];
@@ -277,14 +279,14 @@ pub fn carry(
     let input = |k: u32| tree.order[k as usize] as usize;
     let mean = |i: usize, value: &dyn Fn(usize) -> f64| -> f64 {
         let (mut sum, mut total) = (0.0, 0.0);
-        for &(k, u) in members.of(i) {
+        for (k, u) in members.of(i) {
             sum += f64::from(u) * value(input(k));
             total += f64::from(u);
         }
         if total > 0.0 { sum / total } else { 0.0 }
     };
     let each = 0..placed.len();
-    let votes = |i: usize| members.of(i).iter().map(|&(k, u)| (input(k), u));
+    let votes = |i: usize| members.of(i).map(|(k, u)| (input(k), u));
     let closest = |i: usize| input(nearest[i]);
     let colors = cloud.colors.as_ref().map(|colors| {
         let of = |i: usize| match how(COLORS) {

@@ -38,8 +38,8 @@ pub struct Reduced {
     /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order;
     /// [`crate::outliers::DROPPED`] for one that was dropped.
     pub assignment: Option<Vec<u32>>,
-    /// The reduced points nearest to each input point, nearest first, in the octree's order.
-    pub near: Vec<[u32; SHARES]>,
+    /// The shares of the input points, in the octree's order, in the reduced points.
+    pub shares: Vec<Shares>,
     /// What the clustering did.
     pub stats: ReduceStats,
     /// Why the count is not what was asked for, where it is not; else empty.
@@ -114,7 +114,7 @@ pub fn reduce(
     let (mut placed, around) = job.place(&clustering, &members, &goal);
     progress.update(Stage::Place, 0.5)?;
     let nearest = if placement == Placement::Sample {
-        placement::snap(tree, &clustering.shares, &members, &mut placed)
+        placement::snap(tree, &members, &mut placed)
     } else {
         par::map(
             placed.len(),
@@ -143,7 +143,7 @@ pub fn reduce(
         weights,
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
-        near: clustering.shares.iter().map(Shares::near).collect(),
+        shares: clustering.shares,
         stats,
         reason,
     })
@@ -221,8 +221,7 @@ impl Job<'_> {
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
-            let near: Vec<_> = clustering.shares.iter().map(Shares::near).collect();
-            cloud_distances(self.denoised, &near, &patches, progress).map(Some)
+            cloud_distances(self.denoised, &clustering.shares, &patches, progress).map(Some)
         })?;
         Ok(goal(chord))
     }
@@ -281,7 +280,7 @@ impl Job<'_> {
             borders::restore(
                 self.tree,
                 (self.denoised, self.features),
-                (&clustering.shares, members),
+                members,
                 &around,
                 &mut placed,
             );
@@ -351,7 +350,7 @@ fn stats(
     let centers = &clustering.centers;
     let mut objective = 0.0;
     for (p, s) in tree.points.iter().zip(&clustering.shares) {
-        for (&i, &u) in s.center.iter().zip(&s.u).filter(|&(_, &u)| u > 0.0) {
+        for (i, u) in s.used() {
             objective +=
                 power.raise(f64::from(u)) * f64::from(p.distance_squared(centers[i as usize]));
         }

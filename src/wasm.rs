@@ -72,28 +72,20 @@ pub fn defaults() -> JsResult {
 /// [`pipeline::reduce`].
 #[wasm_bindgen]
 pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
-    let input = cloud.read();
-    let mut result = pipeline::reduce(
-        &input.to_cloud()?,
-        &from_js(options)?,
-        &mut JsProgress(progress),
-    )?;
+    let (input, precision) = cloud.to_cloud()?;
+    let mut result = pipeline::reduce(&input, &from_js(options)?, &mut JsProgress(progress))?;
     sign(&mut result.report);
-    reduced_to_js(&result, &input)
+    reduced_to_js(&result, precision)
 }
 
 /// [`pipeline::reconstruct`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
-    let input = cloud.read();
-    let mut surface = pipeline::reconstruct(
-        &input.to_cloud()?,
-        &from_js(options)?,
-        &mut JsProgress(progress),
-    )?;
+    let (input, precision) = cloud.to_cloud()?;
+    let mut surface = pipeline::reconstruct(&input, &from_js(options)?, &mut JsProgress(progress))?;
     sign(&mut surface.report.reduce);
     sign(&mut surface.cloud.report);
-    surface_to_js(&surface, &input)
+    surface_to_js(&surface, precision)
 }
 
 /// [`pipeline::inspect`].
@@ -224,6 +216,23 @@ impl PointCloud {
             ..RawCloud::new(positions)
         }
     }
+
+    /// The cloud, and what its positions were in; no second copy of them stays.
+    fn to_cloud(&self) -> Result<(Cloud, Precision), Error> {
+        let raw = self.read();
+        let precision = match raw.positions {
+            Positions::F32(_) => Precision::Single,
+            Positions::F64(_) => Precision::Double,
+        };
+        Ok((raw.to_cloud()?, precision))
+    }
+}
+
+/// Type of the positions of a cloud, and of its results.
+#[derive(Clone, Copy)]
+enum Precision {
+    Single,
+    Double,
 }
 
 /// An entry `[name, values]`.
@@ -235,12 +244,15 @@ fn attribute(entry: &Array) -> Attribute {
 }
 
 /// A `ReducedCloud` with positions of the input's type.
-fn reduced_to_js(result: &ReducedCloud, input: &RawCloud) -> JsResult {
+fn reduced_to_js(result: &ReducedCloud, precision: Precision) -> JsResult {
     let reduced = &result.reduced;
     let cloud = &reduced.cloud;
     let normals = cloud.normals.as_deref().unwrap_or_default();
     let fields = object([
-        ("positions", positions_to_js(&cloud.points, cloud, input)),
+        (
+            "positions",
+            positions_to_js(&cloud.points, cloud, precision),
+        ),
         ("normals", triples(normals)),
         ("colors", colors_to_js(&cloud.colors)),
         (
@@ -259,31 +271,34 @@ fn reduced_to_js(result: &ReducedCloud, input: &RawCloud) -> JsResult {
 }
 
 /// A `SurfaceMesh` with positions of the input's type.
-fn surface_to_js(surface: &Surface, input: &RawCloud) -> JsResult {
+fn surface_to_js(surface: &Surface, precision: Precision) -> JsResult {
     let mesh = &surface.mesh;
     let cloud = &surface.cloud.reduced.cloud;
     let fields = object([
-        ("positions", positions_to_js(&mesh.vertices, cloud, input)),
+        (
+            "positions",
+            positions_to_js(&mesh.vertices, cloud, precision),
+        ),
         ("normals", triples(&mesh.normals)),
         (
             "indices",
             Uint32Array::from(mesh.triangles.as_flattened()).into(),
         ),
         ("colors", colors_to_js(&surface.colors)),
-        ("cloud", reduced_to_js(&surface.cloud, input)?),
+        ("cloud", reduced_to_js(&surface.cloud, precision)?),
         ("report", to_js(&surface.report)?),
     ])?;
     attach(fields, &surface.attributes, cloud.origin)
 }
 
 /// Points of the unit frame in the caller's, single or double precision as the input was.
-fn positions_to_js(points: &[Vec3], cloud: &Cloud, input: &RawCloud) -> JsValue {
+fn positions_to_js(points: &[Vec3], cloud: &Cloud, precision: Precision) -> JsValue {
     let coordinates = points.iter().flat_map(|&p| cloud.frame.to_caller(p));
-    match input.positions {
-        Positions::F32(_) => {
+    match precision {
+        Precision::Single => {
             Float32Array::from(&coordinates.map(|x| x as f32).collect::<Vec<_>>()[..]).into()
         }
-        Positions::F64(_) => Float64Array::from(&coordinates.collect::<Vec<_>>()[..]).into(),
+        Precision::Double => Float64Array::from(&coordinates.collect::<Vec<_>>()[..]).into(),
     }
 }
 

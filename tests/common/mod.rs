@@ -3,7 +3,7 @@
 #![allow(dead_code)] // every test file takes what it needs
 
 use glam::{DVec3, Vec3};
-use pointweave::clusters::SHARES;
+use pointweave::clusters::{SHARES, Shares};
 use pointweave::height_field::{Patches, cloud_distances};
 use pointweave::octree::Octree;
 use pointweave::progress::Silent;
@@ -139,10 +139,14 @@ pub fn distances_to(reduced: &[Vec3], normals: &[Vec3], points: &[Vec3]) -> Vec<
     let tree = Octree::build(reduced);
     let patches = Patches::fit(&tree, normals);
     let mut found = Vec::new();
-    let mut nearest = |p: &Vec3| -> [u32; SHARES] {
+    let mut nearest = |p: &Vec3| {
         tree.knn(*p, SHARES, &mut found);
-        std::array::from_fn(|j| tree.order[found.get(j).unwrap_or(&found[0]).index as usize])
+        let near = |j: usize| tree.order[found.get(j).unwrap_or(&found[0]).index as usize];
+        Shares {
+            center: std::array::from_fn(near),
+            u: [1.0 / SHARES as f32; SHARES],
+        }
     };
-    let near: Vec<_> = points.iter().map(&mut nearest).collect();
-    cloud_distances(points, &near, &patches, &mut Silent).expect("nobody cancels")
+    let shares: Vec<Shares> = points.iter().map(&mut nearest).collect();
+    cloud_distances(points, &shares, &patches, &mut Silent).expect("nobody cancels")
 }
