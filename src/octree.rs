@@ -94,8 +94,8 @@ impl Octree {
         let mut tree = Octree {
             points: order.iter().map(|&i| points[i as usize]).collect(),
             order,
-            // Leaves hold three to eight points on surfaces.
-            nodes: Vec::with_capacity(points.len() / 3 + 1),
+            // Two nodes for five points, on surfaces.
+            nodes: Vec::with_capacity(points.len() * 9 / 20 + 1),
         };
         tree.nodes.push(tree.node(all, 0));
         let mut next = 0;
@@ -103,6 +103,7 @@ impl Octree {
             tree.split(next);
             next += 1;
         }
+        tree.nodes.shrink_to_fit();
         tree
     }
 

@@ -107,13 +107,15 @@ pub fn reduce(
         Target::Tolerance(_) => tolerance::DONE,
         _ => 0.0,
     };
-    let clustering = job.cluster(&goal, &mut Part::new(progress, searched..1.0))?;
+    let plan = job.plan(&goal);
+    let clustering = job.cluster(goal, &mut Part::new(progress, searched..1.0))?;
     progress.update(Stage::Place, 0.0)?;
-    let placement = job.placement(&goal);
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let (mut placed, around) = job.place(&clustering, &members, &goal);
+    let (mut placed, around) = job.place(&clustering, &members, plan);
+    let stats = stats(tree, &clustering, &around, power);
+    drop((around, denoised, clustering.index, clustering.spacing));
     progress.update(Stage::Place, 0.5)?;
-    let nearest = if placement == Placement::Sample {
+    let nearest = if plan.placement == Placement::Sample {
         placement::snap(tree, &members, &mut placed)
     } else {
         par::map(
@@ -134,7 +136,6 @@ pub fn reduce(
         }
         assignment
     });
-    let stats = stats(tree, &clustering, &around, power);
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
         cloud: reduced,
@@ -165,6 +166,14 @@ enum Goal {
     Density(usize, Density),
     /// Flat cells are reduced, the others kept: the paper's own criterion, for which both methods take its cells.
     Flatness,
+}
+
+/// How centres are placed.
+#[derive(Clone, Copy)]
+struct Plan {
+    placement: Placement,
+    /// Whether those next to open borders move out to them.
+    to_borders: bool,
 }
 
 /// What a reduction works on.
@@ -212,12 +221,13 @@ impl Job<'_> {
         let n = self.tree.points.len();
         let chord = tolerance::search(self.features, tolerance, progress, |chord, progress| {
             let goal = goal(chord);
-            let clustering = self.cluster(&goal, progress)?;
+            let plan = self.plan(&goal);
+            let clustering = self.cluster(goal, progress)?;
             if clustering.centers.len() == n {
                 return Ok(None);
             }
             let members = Members::new(&clustering.shares, clustering.centers.len());
-            let (placed, _) = self.place(&clustering, &members, &goal);
+            let (placed, _) = self.place(&clustering, &members, plan);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
@@ -226,7 +236,7 @@ impl Job<'_> {
         Ok(goal(chord))
     }
 
-    fn cluster(&self, goal: &Goal, progress: &mut dyn Progress) -> Result<Clustering> {
+    fn cluster(&self, goal: Goal, progress: &mut dyn Progress) -> Result<Clustering> {
         let Job {
             tree,
             features,
@@ -234,28 +244,35 @@ impl Job<'_> {
             ..
         } = *self;
         match goal {
-            Goal::Count(count) | Goal::Density(count, _) if *count == tree.points.len() => {
+            Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {
                 Ok(keep_all(tree, features))
             }
             Goal::Flatness => paper::cluster(tree, features, None, params, progress),
-            Goal::Count(count) => paper::cluster(tree, features, Some(*count), params, progress),
-            Goal::Density(count, density) => {
-                let samples = Samples {
-                    points: self.denoised,
-                    features,
-                    density,
-                };
-                adaptive(tree, samples, *count, params, progress)
-            }
+            Goal::Count(count) => paper::cluster(tree, features, Some(count), params, progress),
+            Goal::Density(count, density) => adaptive(
+                tree,
+                (self.denoised, features),
+                (count, density),
+                params,
+                progress,
+            ),
         }
     }
 
-    /// The placement that applies: points that are all kept, and the paper's centres, stay where they are.
-    fn placement(&self, goal: &Goal) -> Placement {
-        match (self.params.placement, goal) {
-            (Placement::Sample, _) => Placement::Sample,
-            (other, Goal::Density(count, _)) if *count < self.tree.points.len() => other,
+    /// How centres are placed: points that are all kept, and the paper's centres, stay where they are.
+    fn plan(&self, goal: &Goal) -> Plan {
+        let dense = match goal {
+            Goal::Density(count, _) => *count < self.tree.points.len(),
+            Goal::Count(_) | Goal::Flatness => false,
+        };
+        let placement = match self.params.placement {
+            Placement::Sample => Placement::Sample,
+            other if dense => other,
             _ => Placement::Center,
+        };
+        Plan {
+            placement,
+            to_borders: dense && placement != Placement::Center,
         }
     }
 
@@ -264,19 +281,18 @@ impl Job<'_> {
         &self,
         clustering: &Clustering,
         members: &Members,
-        goal: &Goal,
+        plan: Plan,
     ) -> (Vec<Placed>, Vec<Around>) {
-        let placement = self.placement(goal);
         let power = Fuzzifier::new(fuzzifier(self.params));
         let mut placed = placement::place(
             self.denoised,
             self.features,
             &clustering.centers,
             members,
-            (placement, power),
+            (plan.placement, power),
         );
         let around = surroundings::measure(&clustering.index, |i| placed[i].spacing);
-        if matches!(goal, Goal::Density(..)) && placement != Placement::Center {
+        if plan.to_borders {
             borders::restore(
                 self.tree,
                 (self.denoised, self.features),
@@ -316,14 +332,19 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 
 fn adaptive(
     tree: &Octree,
-    samples: Samples,
-    count: usize,
+    (points, features): (&[Vec3], &Features),
+    (count, density): (usize, Density),
     params: &ReduceParams,
     progress: &mut dyn Progress,
 ) -> Result<Clustering> {
     let capacity = cell_points(count, tree.points.len(), params);
     let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
-    let quotas = density::quotas(&samples.density.shares(&cells), &cells, count);
+    let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let samples = Samples {
+        points,
+        features,
+        density: &density,
+    };
     let settling = Settling {
         fuzzifier: fuzzifier(params),
         epsilon: params.epsilon.unwrap_or(1e-2),
@@ -334,7 +355,7 @@ fn adaptive(
         centers: clusters.centers,
         shares: clusters.shares,
         index: clusters.index,
-        spacing: samples.density.spacing.clone(),
+        spacing: density.spacing,
         cells: cells.len(),
         iterations: clusters.iterations,
         kept: 0,
