@@ -157,13 +157,13 @@ export interface ReduceReport extends RunReport {
   outputPoints: number;
   /** Sub-domains of the octree. */
   cells: number;
-  /** Of fuzzy c-means, the most in any sub-domain. */
+  /** Sweeps of fuzzy c-means; the most in any sub-domain. */
   iterations: number;
-  /** J of eq. 1, summed over the sub-domains. */
+  /** J of eq. 1 over the whole cloud, in squared diagonals. */
   objective: number;
-  /** V of eq. 7, mean over the sub-domains. */
+  /** χ of eq. 7 over the whole cloud; 0 where it is not defined: one centre, or two at one place. */
   validity: number;
-  /** Spread of the distance to the nearest neighbour over its mean; 0 is perfectly even. */
+  /** Spread over mean of the distance to the nearest other centre in wanted spacings; 0 is perfectly even. */
   evenness: number;
   /** Estimated noise, a fraction. */
   noise: number;

@@ -78,11 +78,11 @@ pub struct ReduceReport {
     pub output_points: usize,
     /// Sub-domains that were clustered or kept.
     pub cells: usize,
-    /// Iterations of steps (b) and (c), summed over the sub-domains.
+    /// Sweeps of steps (b) and (c); the most that any sub-domain took.
     pub iterations: usize,
-    /// J of eq. 1, summed over the sub-domains.
+    /// J of eq. 1 over the whole cloud, in squared diagonals.
     pub objective: f64,
-    /// The validity index of eq. 7, averaged over the clustered sub-domains.
+    /// The validity index χ of eq. 7 over the whole cloud; 0 where it is not defined: one centre, or two at one place.
     pub validity: f64,
     /// How even the result's spacing is: standard deviation over mean of nearest-neighbour distance by wanted spacing.
     pub evenness: f64,

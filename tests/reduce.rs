@@ -714,6 +714,94 @@ fn a_few_far_points_cost_no_detail() {
 }
 
 #[test]
+fn the_figures_are_those_of_a_naive_computation() {
+    for (method, m) in [
+        (Method::Adaptive, 1.5),
+        (Method::Adaptive, 2.0),
+        (Method::Adaptive, 1.7),
+        (Method::Paper, 2.0),
+    ] {
+        // Without noise nothing is moved, and raw centres stay where they are.
+        let cloud = shape(Shape::Torus, 1500, 0.0);
+        let params = ReduceParams {
+            method,
+            fuzzifier: Some(m),
+            placement: Placement::Center,
+            ..count(300)
+        };
+        let r = run(&cloud, &params);
+        let points = Octree::build(&cloud.points).points;
+        let away = |p: Vec3, i: usize| p.as_dvec3().distance_squared(r.cloud.points[i].as_dvec3());
+        let (mut objective, mut others) = (0.0, 0);
+        for (&p, shares) in points.iter().zip(&r.shares) {
+            let mut nearest: Vec<usize> = (0..r.cloud.len()).collect();
+            nearest.sort_by(|&i, &j| away(p, i).total_cmp(&away(p, j)));
+            assert_eq!(shares.center[0] as usize, nearest[0], "{method:?} {m}");
+            others += usize::from(shares.center.map(|i| i as usize) != nearest[..4]);
+            // Eq. 5 over the centres that count.
+            let d: Vec<f64> = shares.used().map(|(i, _)| away(p, i as usize)).collect();
+            for ((i, u), &di) in shares.used().zip(&d) {
+                let sum: f64 = d.iter().map(|dj| (di / dj).powf(1.0 / (m - 1.0))).sum();
+                // A point at a centre belongs to it alone.
+                let expected = if d[0] == 0.0 {
+                    f64::from(u8::from(di == 0.0))
+                } else {
+                    1.0 / sum
+                };
+                assert!(
+                    (f64::from(u) - expected).abs() < 1e-4,
+                    "{method:?} {m}: {u} {expected}"
+                );
+                objective += f64::from(u).powf(m) * away(p, i as usize);
+            }
+        }
+        assert!(
+            others * 100 < points.len(),
+            "{others} have other centres than their four nearest"
+        );
+        assert!((r.stats.objective / objective - 1.0).abs() < 1e-3);
+        let apart: Vec<f64> = (0..r.cloud.len())
+            .map(|i| {
+                let others = (0..r.cloud.len()).filter(|&j| j != i);
+                others
+                    .map(|j| away(r.cloud.points[j], i))
+                    .fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let separation = apart.iter().copied().fold(f64::INFINITY, f64::min);
+        let validity = objective / (r.cloud.len() as f64 * separation);
+        assert!(
+            (r.stats.validity / validity - 1.0).abs() < 1e-3,
+            "{} {validity}",
+            r.stats.validity
+        );
+    }
+}
+
+#[test]
+fn evenness_is_that_of_known_patterns() {
+    // A regular grid is perfectly even; random points have Rayleigh distributed distances, √(4/π - 1) = 0.523.
+    let side = 60;
+    let grid: Vec<f64> = (0..side * side)
+        .flat_map(|k| [(k % side) as f64, (k / side) as f64, 0.0])
+        .collect();
+    let mut rng = Rng::new(2);
+    let random: Vec<f64> = (0..side * side)
+        .flat_map(|_| [rng.uniform(), rng.uniform(), 0.0])
+        .collect();
+    let evenness = |positions: &[f64]| {
+        let cloud = Cloud::from_f64(positions).unwrap();
+        run(&cloud, &count(side * side)).stats.evenness
+    };
+    assert!(evenness(&grid) < 0.08, "{}", evenness(&grid));
+    assert!(
+        (evenness(&random) - 0.523).abs() < 0.06,
+        "{}",
+        evenness(&random)
+    );
+}
+
+#[test]
 fn open_borders_stay_where_they_are() {
     // A wavy square sheet as a depth camera would see it, noise included.
     let side = 120;
