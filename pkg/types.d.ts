@@ -1,7 +1,8 @@
 /**
  * Point clouds to reduced clouds, oriented normals and meshes.
  *
- * Lengths and tolerances that are called fractions are fractions of the diagonal of the input's bounding box.
+ * Lengths and tolerances that are called fractions are fractions of the diagonal of the input's bounding box; where at most
+ * 2 % of the points are tens of diagonals away from all others, of that of the others.
  * Positions go in and come out in the caller's own frame and unit.
  */
 
@@ -49,7 +50,10 @@ export type Target =
   | { ratio: number }
   /** Exactly this many points. */
   | { count: number }
-  /** As few points as keep the local surfaces within this distance, a fraction, (0, 1). */
+  /**
+   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes two to
+   * six reductions. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
+   */
   | { tolerance: number }
   /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
   | { flatness: number };
