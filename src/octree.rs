@@ -5,6 +5,7 @@
 //! into one octant make no node. Points that share all 21 bits an axis are cut in the middle of their longest side, copies by
 //! index, so neither costs more than others.
 
+use crate::par;
 use glam::Vec3;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -87,7 +88,7 @@ impl Octree {
             .enumerate()
             .map(|(i, &p)| (morton(p), i as u32))
             .collect();
-        keyed.sort_unstable();
+        par::sort(&mut keyed);
         let order: Vec<u32> = keyed.iter().map(|&(_, i)| i).collect();
         drop(keyed);
         let all = 0..points.len();
