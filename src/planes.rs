@@ -19,8 +19,8 @@ const SUPPORT: f32 = 1.2;
 /// A point whose neighbours weigh less than this is in a sparser part than its block, and asks for itself. Even density gives
 /// a third of the `SUPPORT²·k` neighbours.
 const FEW: f32 = 2.5;
-/// A cell gathers this many times as far as an even patch over its box would need, as few have an even patch.
-const MARGIN: f32 = 1.6;
+/// A cell gathers this many times as far as an even patch over its box would need. Blocks that need more gather for themselves.
+const MARGIN: f32 = 1.4;
 /// Share of the second moments about the point that the moments about the mean must have. At a straight border it is a fifth.
 const ROUNDING: f32 = 1e-3;
 
@@ -51,12 +51,20 @@ impl Planes {
         let reach = MARGIN * SUPPORT * even_reach(corners, range.len(), k);
         let gathered = self.cell.gather(tree, corners, reach);
         for block in Block::all(&tree.points, range) {
-            let kth = self.cell.kth_distance(tree.points[block.middle()], k);
-            let radius = SUPPORT * kth;
+            let middle = tree.points[block.middle()];
+            let mut radius = SUPPORT * self.cell.kth_distance(middle, k);
+            let mut hood = &mut self.cell;
+            let mut together = gathered && radius <= reach;
+            if !together {
+                tree.knn(middle, k, &mut self.found);
+                radius = SUPPORT * self.found.last().map_or(0.0, |n| n.distance2).sqrt();
+                hood = &mut self.own;
+                together = hood.gather(tree, (block.lo, block.hi), radius);
+            }
             let start = planes.len();
-            if gathered && radius > 0.0 && radius <= reach {
-                self.cell.narrow(&block, radius);
-                planes.extend(planes_of(&block, radius, &self.cell));
+            if together && radius > 0.0 {
+                hood.narrow(&block, radius);
+                planes.extend(planes_of(&block, radius, hood));
             } else {
                 planes.extend(block.range.clone().map(|_| Plane::default()));
             }
