@@ -240,7 +240,7 @@ impl Fcm {
             for (distance, v) in self.distance.iter_mut().zip(&self.centers) {
                 let [dx, dy, dz] = [x - v.x, y - v.y, z - v.z];
                 *distance = dx * dx + dy * dy + dz * dz;
-                nearest = distance.simd_lt(nearest).bitselect(*distance, nearest);
+                nearest = distance.fast_min(nearest);
             }
             let mut total = f64x4::ZERO;
             for (share, distance) in self.share.iter_mut().zip(&self.distance) {
@@ -256,7 +256,7 @@ impl Fcm {
                 let u = self.share[i] * inverse;
                 let row = &mut self.u[i * stride + block..][..LANES];
                 let moved = (u - load(row)).abs();
-                most = most.simd_lt(moved).bitselect(moved, most);
+                most = moved.fast_max(most);
                 row.copy_from_slice(&u.to_array());
                 let w = weight * power.raise(u);
                 objective += w * self.distance[i];

@@ -10,7 +10,8 @@
 //!    By that distance noisy points are moved.
 
 use crate::error::Result;
-use crate::filter::Filter;
+use crate::filter::{Filter, Sums};
+use crate::lanes::LANES;
 use crate::neighborhood::CELL;
 use crate::noise::{Scales, quantile};
 use crate::octree::Octree;
@@ -89,33 +90,34 @@ impl Features {
             noise: scales.noise,
         };
         drop(planes);
-        let mut part = Part::new(progress, 0.4..0.7);
-        features.normals = par::flat_map_progress(
-            cells.len(),
-            n,
-            20.0,
-            (Stage::Features, &mut part),
-            Filter::default,
-            |i, filter| {
-                let cell = cells[i].clone();
-                filter.cell(tree, &features, cell, |sums, denoise| sums.normals(denoise))
-            },
-        )?;
-        let mut part = Part::new(progress, 0.7..1.0);
-        let offsets = par::flat_map_progress(
-            cells.len(),
-            n,
-            20.0,
-            (Stage::Features, &mut part),
-            Filter::default,
-            |i, filter| {
-                let cell = cells[i].clone();
-                filter.cell(tree, &features, cell, |sums, denoise| sums.offsets(denoise))
-            },
-        )?;
+        let (early, late) = (0.4..0.7, 0.7..1.0);
+        features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
+            sums.normals(denoise)
+        })?;
+        let offsets = features.pass(tree, &cells, (progress, late), |sums, denoise| {
+            sums.offsets(denoise)
+        })?;
         features.residual = offsets.iter().map(|o| o.residual).collect();
         features.curvature = offsets.iter().map(|o| o.curvature).collect();
         Ok(features)
+    }
+
+    /// One pass of the filter over all points, as a part of the stage's progress.
+    fn pass<T: Send>(
+        &self,
+        tree: &Octree,
+        cells: &[Range<usize>],
+        (progress, range): (&mut dyn Progress, Range<f32>),
+        of: impl Fn(&Sums, f32) -> [T; LANES] + Sync + Send,
+    ) -> Result<Vec<T>> {
+        par::flat_map_progress(
+            cells.len(),
+            tree.points.len(),
+            20.0,
+            (Stage::Features, &mut Part::new(progress, range)),
+            Filter::default,
+            |i, filter| filter.cell(tree, self, cells[i].clone(), &of),
+        )
     }
 
     /// The points moved onto the surface.
