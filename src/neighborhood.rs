@@ -153,11 +153,6 @@ impl Neighborhood {
         }
     }
 
-    /// How far around the cell's box everything was gathered.
-    pub fn reach(&self) -> f32 {
-        self.reach
-    }
-
     /// Distance from `q` to the `k`-th nearest gathered point, or to the farthest one if there are fewer; where points lie on a
     /// surface, to within a few hundredths: it is counted how many are within a radius, and that is scaled until it fits.
     pub fn kth_distance(&mut self, q: Vec3, k: usize) -> f32 {

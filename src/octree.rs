@@ -318,23 +318,6 @@ impl Octree {
         }
     }
 
-    /// All points within `r` of `q`, by index; `out` is cleared.
-    pub fn within(&self, q: Vec3, r: f32, out: &mut Vec<Neighbor>) {
-        out.clear();
-        self.visit(
-            |_, node| node.distance2(q) <= r * r,
-            |i| {
-                let distance2 = self.points[i].distance_squared(q);
-                if distance2 <= r * r {
-                    out.push(Neighbor {
-                        distance2,
-                        index: i as u32,
-                    });
-                }
-            },
-        );
-    }
-
     /// Calls `visit` with ranges of points, ascending, that together hold every point of a box (and some near it), until it
     /// returns false; whether it never did.
     pub fn visit_box(
@@ -506,14 +489,22 @@ mod tests {
                     assert_eq!(d(&found), d(&all[..k.min(n)]));
                 }
                 assert_eq!(tree.nearest(q).distance2, all[0].distance2);
-                tree.within(q, 0.2, &mut found);
+                for guess in [all[0], all[n / 2], all[n - 1]] {
+                    assert_eq!(tree.nearer_than(guess, q).distance2, all[0].distance2);
+                }
+                let mut seen = Vec::new();
+                let within = |p: Vec3| p.distance_squared(q) <= 0.2 * 0.2;
+                tree.visit(
+                    |_, node| node.distance2(q) <= 0.2 * 0.2,
+                    |i| seen.extend(within(tree.points[i]).then_some(i as u32)),
+                );
                 let mut inside: Vec<u32> = all
                     .iter()
                     .filter(|n| n.distance2 <= 0.2 * 0.2)
                     .map(|n| n.index)
                     .collect();
                 inside.sort_unstable();
-                assert_eq!(found.iter().map(|n| n.index).collect::<Vec<_>>(), inside);
+                assert_eq!(seen, inside);
             }
         }
     }
