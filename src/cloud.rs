@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use glam::Vec3;
 use std::ops::Range;
 
-/// The bounding box is that of the others where a few points are this many diagonals away: single precision would leave too
-/// little for what is near. Farther than the end of the range nothing can be told of them.
+/// The bounding box is that of the others where a few points make it this many times as long: at 100 times a surface of
+/// what is near was gone, at 10,000 single precision has nothing left for it. Beyond the end of the range squares overflow.
 const FAR_OUT: Range<f64> = 10.0..1e15;
 /// Those are less than this share of the points, on any side.
 const A_FEW: f64 = 0.02;
@@ -17,8 +17,8 @@ const SAMPLE: usize = 4096;
 pub struct Frame {
     /// Centre of the bounding box, in the caller's frame and unit.
     pub center: [f64; 3],
-    /// Diagonal of the bounding box in the caller's unit; 1 when all points are equal. Without the few points that are a
-    /// thousand times farther out than all others.
+    /// Diagonal of the bounding box in the caller's unit; 1 when all points are equal. Without the few points that
+    /// make it more than ten times as long.
     pub diagonal: f64,
 }
 

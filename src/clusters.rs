@@ -279,16 +279,12 @@ fn gather(cells: &mut [Cell], centers: &[Vec3]) -> Octree {
             let cell = &cells[i];
             let (lo, hi) = (cell.origin - cell.half, cell.origin + cell.half);
             let mut reach = Vec::new();
-            index.visit_box(lo, hi, |range| {
-                let inside = |&k: &usize| {
-                    let p = index.points[k];
-                    p.cmpge(lo).all() && p.cmple(hi).all()
-                };
-                reach.extend(range.filter(inside).map(|k| index.order[k]));
-                true
-            });
+            index.gather(lo, hi, usize::MAX, &mut reach);
             if reach.is_empty() {
-                reach.push(index.order[index.nearest(cell.origin).index as usize]);
+                reach.push(index.nearest(cell.origin).index);
+            }
+            for i in &mut reach {
+                *i = index.order[*i as usize];
             }
             reach.sort_unstable();
             reach

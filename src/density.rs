@@ -289,7 +289,7 @@ fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
                 tree.knn(middle, RING, &mut around.found);
                 radius = around.found.last().map_or(0.0, |n| n.distance2).sqrt();
                 hood = &mut around.own;
-                hood.gather_box(&tree, (block.lo, block.hi), radius);
+                hood.gather_all(&tree, (block.lo, block.hi), radius);
             }
             hood.narrow(&block, radius);
             rings.extend(block.range.clone().map(|i| {

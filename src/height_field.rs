@@ -42,8 +42,9 @@ const QUADRIC: usize = 6;
 #[derive(Debug, Clone, Copy)]
 struct Patch {
     at: Vec3,
-    /// Normal of the plane; the point's own.
+    /// Normal of the plane.
     up: Vec3,
+    /// The point's own.
     normal: Vec3,
     /// Unit of length of the coefficients; none of the patch is known farther away.
     radius: f32,

@@ -104,43 +104,38 @@ const FAR: f32 = 1e6;
 impl Neighborhood {
     /// Gathers the points of `source` within `reach` of a box. False where they are so many that points had better ask
     /// one by one; then nothing is gathered.
-    pub fn gather(&mut self, source: &Octree, (lo, hi): (Vec3, Vec3), reach: f32) -> bool {
-        self.around.clear();
-        self.reach = reach;
-        let around = &mut self.around;
-        let (lo, hi) = (lo - reach, hi + reach);
-        let inside = |i: &usize| {
-            let p = source.points[*i];
-            p.cmpge(lo).all() && p.cmple(hi).all()
-        };
-        let whole = source.visit_box(lo, hi, |range| {
-            around.extend(range.filter(inside).map(|i| i as u32));
-            around.len() <= MOST
-        });
+    pub fn gather(&mut self, source: &Octree, corners: (Vec3, Vec3), reach: f32) -> bool {
+        let whole = self.gather_most(source, corners, reach, MOST);
         if !whole {
-            around.clear();
+            self.around.clear();
         }
         self.load(source);
         whole
     }
 
-    /// Gathers the points within `reach` of one point, however many.
+    /// [`Neighborhood::gather`], however many there are.
+    pub fn gather_all(&mut self, source: &Octree, corners: (Vec3, Vec3), reach: f32) {
+        self.gather_most(source, corners, reach, usize::MAX);
+        self.load(source);
+    }
+
+    /// Gathers the points within `reach` of one point, however many; all of them are near.
     pub fn gather_at(&mut self, source: &Octree, p: Vec3, reach: f32) {
-        self.gather_box(source, (p, p), reach);
+        self.gather_all(source, (p, p), reach);
         self.near.clear();
         self.near.extend(0..self.around.len() as u32);
     }
 
-    /// [`Neighborhood::gather`], however many there are.
-    pub fn gather_box(&mut self, source: &Octree, (lo, hi): (Vec3, Vec3), reach: f32) {
+    fn gather_most(
+        &mut self,
+        source: &Octree,
+        (lo, hi): (Vec3, Vec3),
+        reach: f32,
+        most: usize,
+    ) -> bool {
         self.around.clear();
         self.reach = reach;
-        let around = &mut self.around;
-        source.visit_box(lo - reach, hi + reach, |range| {
-            around.extend(range.map(|i| i as u32));
-            true
-        });
-        self.load(source);
+        source.gather(lo - reach, hi + reach, most, &mut self.around)
     }
 
     fn load(&mut self, source: &Octree) {

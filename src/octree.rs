@@ -318,14 +318,12 @@ impl Octree {
         }
     }
 
-    /// Calls `visit` with ranges of points, ascending, that together hold every point of a box (and some near it), until it
-    /// returns false; whether it never did.
-    pub fn visit_box(
-        &self,
-        lo: Vec3,
-        hi: Vec3,
-        mut visit: impl FnMut(Range<usize>) -> bool,
-    ) -> bool {
+    /// Appends the points of a box, ascending, until there are more than `most` in `out`; whether all of them are there.
+    pub fn gather(&self, lo: Vec3, hi: Vec3, most: usize, out: &mut Vec<u32>) -> bool {
+        let within = |i: &u32| {
+            let p = self.points[*i as usize];
+            p.cmpge(lo).all() && p.cmple(hi).all()
+        };
         let mut stack = Vec::with_capacity(64);
         stack.push(0);
         while let Some(id) = stack.pop() {
@@ -334,9 +332,14 @@ impl Octree {
                 continue;
             }
             let inside = node.lo.cmpge(lo).all() && node.hi.cmple(hi).all();
-            if !inside && !node.is_leaf() {
+            if inside {
+                out.extend(node.start..node.end);
+            } else if node.is_leaf() {
+                out.extend((node.start..node.end).filter(within));
+            } else {
                 stack.extend(node.child_ids().rev());
-            } else if !visit(node.range()) {
+            }
+            if out.len() > most {
                 return false;
             }
         }

@@ -40,7 +40,7 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
             let radius = Lanes::splat(RING) * block.lanes(spacing);
             let reach = radius.to_array().into_iter().fold(0.0, f32::max);
             if !together {
-                scratch.hood.gather_box(index, (block.lo, block.hi), reach);
+                scratch.hood.gather_all(index, (block.lo, block.hi), reach);
             }
             scratch.hood.narrow(&block, reach);
             let found = block_of(&block, radius, &scratch.hood);
