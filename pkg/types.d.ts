@@ -51,8 +51,8 @@ export type Target =
   /** Exactly this many points. */
   | { count: number }
   /**
-   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes two to
-   * six reductions. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
+   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes mostly two
+   * to six reductions, at most eleven. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
    */
   | { tolerance: number }
   /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */

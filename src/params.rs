@@ -13,7 +13,7 @@ pub enum Target {
     /// Exactly this many points, at least 1; more than there are means all of them.
     Count(usize),
     /// The fewest points whose local surfaces ([`crate::height_field`]) have 99 % of the surface within this distance (fraction
-    /// of the diagonal), found by reducing and measuring two to six times; at least 1.5 times the noise (section 5).
+    /// of the diagonal), found by reducing and measuring, mostly one to five times; at least 1.5 times the noise (section 5).
     Tolerance(f64),
     /// The paper's λ: sub-domains whose surface variation is under it are reduced, the others keep their points.
     Flatness(f64),

@@ -16,7 +16,7 @@ const SURFACE: f64 = 0.992;
 /// A measured error in this range of the tolerance is close enough: counts go with its inverse, so that at most a
 /// twelfth of the points are too many.
 const CLOSE: RangeInclusive<f64> = 0.92..=1.0;
-/// Reductions that are tried. From the chord's own guess two to four are enough, on the generated samples.
+/// Reductions that are tried. Of 18 searches on the generated samples 16 took one to five, the others eight.
 const TRIALS: usize = 10;
 /// How much of the search's progress is done when it ends.
 pub(crate) const DONE: f32 = 0.9;
