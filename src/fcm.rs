@@ -208,15 +208,16 @@ impl Fcm {
 
     fn iterate<P: Power<f64x4>>(&mut self, power: P, params: &FcmParams) -> Prototypes {
         let mut iterations = 0;
-        let (mut objective, mut change);
+        let mut change;
         loop {
-            (objective, change) = self.sweep(power);
+            change = self.sweep(power);
             iterations += 1;
             if change < params.epsilon || iterations >= params.max_iterations {
                 break;
             }
             self.update_centers();
         }
+        let objective = self.objective(power);
         Prototypes {
             validity: validity(objective, &self.centers),
             centers: self.centers.iter().map(|&v| self.restore(v)).collect(),
@@ -226,11 +227,10 @@ impl Fcm {
         }
     }
 
-    /// One pass over all pairs: U from the centres (eq. 5), the sums of eq. 2, `J` (eq. 1) and the change (eq. 6).
-    fn sweep<P: Power<f64x4>>(&mut self, power: P) -> (f64, f64) {
+    /// One pass over all pairs: U from the centres (eq. 5) and the sums of eq. 2. Returns the change (eq. 6).
+    fn sweep<P: Power<f64x4>>(&mut self, power: P) -> f64 {
         let stride = self.stride();
         self.sums.fill([f64x4::ZERO; 4]);
-        let mut objective = f64x4::ZERO;
         let mut change = f64x4::ZERO;
         for block in (0..stride).step_by(LANES) {
             let [x, y, z] = [0, 1, 2].map(|axis| load(&self.x[axis][block..]));
@@ -243,23 +243,31 @@ impl Fcm {
                 nearest = distance.fast_min(nearest);
             }
             let mut total = f64x4::ZERO;
-            for (share, distance) in self.share.iter_mut().zip(&self.distance) {
-                *share = power.share(nearest / *distance);
-                total += *share;
+            for (shares, distances) in self.share.chunks_mut(2).zip(self.distance.chunks(2)) {
+                if let ([first, second], [a, b]) = (&mut *shares, distances) {
+                    // One division for two; where a distance is 0 all shares are made again below.
+                    let inverse = nearest / (*a * *b);
+                    *first = power.share(*b * inverse);
+                    *second = power.share(*a * inverse);
+                    total += *first + *second;
+                } else {
+                    shares[0] = power.share(nearest / distances[0]);
+                    total += shares[0];
+                }
             }
             if nearest.simd_eq(f64x4::ZERO).any() {
                 total = self.share_zero_distance(nearest, total);
             }
             let inverse = f64x4::ONE / total;
             let mut most = f64x4::ZERO;
-            for (i, sums) in self.sums.iter_mut().enumerate() {
-                let u = self.share[i] * inverse;
-                let row = &mut self.u[i * stride + block..][..LANES];
+            let rows = self.u.chunks_exact_mut(stride);
+            for ((sums, share), row) in self.sums.iter_mut().zip(&self.share).zip(rows) {
+                let u = *share * inverse;
+                let row = &mut row[block..block + LANES];
                 let moved = (u - load(row)).abs();
                 most = moved.fast_max(most);
                 row.copy_from_slice(&u.to_array());
                 let w = weight * power.raise(u);
-                objective += w * self.distance[i];
                 for (sum, term) in sums.iter_mut().zip([w, w * x, w * y, w * z]) {
                     *sum += term;
                 }
@@ -268,8 +276,23 @@ impl Fcm {
             let counted = f64x4::ZERO.simd_lt(weight) & change.simd_lt(most);
             change = counted.bitselect(most, change);
         }
-        let largest = change.to_array().into_iter().fold(0.0, f64::max);
-        (objective.to_array().iter().sum(), largest)
+        change.to_array().into_iter().fold(0.0, f64::max)
+    }
+
+    /// `J` (eq. 1) of the memberships and centres.
+    fn objective<P: Power<f64x4>>(&self, power: P) -> f64 {
+        let stride = self.stride();
+        let mut sum = f64x4::ZERO;
+        for block in (0..stride).step_by(LANES) {
+            let [x, y, z] = [0, 1, 2].map(|axis| load(&self.x[axis][block..]));
+            let weight = load(&self.weight[block..]);
+            for (v, row) in self.centers.iter().zip(self.u.chunks_exact(stride)) {
+                let [dx, dy, dz] = [x - v.x, y - v.y, z - v.z];
+                let w = weight * power.raise(load(&row[block..]));
+                sum += w * (dx * dx + dy * dy + dz * dz);
+            }
+        }
+        sum.to_array().iter().sum()
     }
 
     /// The second case of eq. 5: points with a non-empty `I_k` (eq. 3) belong to those centres alone.
