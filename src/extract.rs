@@ -24,34 +24,19 @@ pub trait Implicit: Sync {
     /// A new [`Implicit::Scratch`].
     fn scratch(&self) -> Self::Scratch;
 
-    /// The fitted value; `None` where no fitted function reaches.
-    fn local(&self, at: DVec3, scratch: &mut Self::Scratch) -> Option<f64>;
-
     /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
     fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
 
-    /// The fitted value with its gradient; `None` where no fitted function reaches.
-    fn gradient(&self, at: DVec3, scratch: &mut Self::Scratch) -> Option<(f64, DVec3)>;
+    /// The fitted values at positions close to each other, one a position; NaN where no fitted function reaches.
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch);
 
-    /// [`Implicit::local`] at many positions close to each other, as a field may evaluate faster; NaN stands for
-    /// `None`. `values` has one entry a position.
-    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch) {
-        for (x, value) in at.iter().zip(values) {
-            *value = self.local(*x, scratch).unwrap_or(f64::NAN);
-        }
-    }
-
-    /// [`Implicit::gradient`] at many positions close to each other. `found` has one entry a position.
+    /// The fitted values with their gradients, one a position; `None` where no fitted function reaches.
     fn gradients(
         &self,
         at: &[DVec3],
         found: &mut [Option<(f64, DVec3)>],
         scratch: &mut Self::Scratch,
-    ) {
-        for (x, found) in at.iter().zip(found) {
-            *found = self.gradient(*x, scratch);
-        }
-    }
+    );
 }
 
 /// Options of [`extract`].

@@ -11,9 +11,12 @@
 
 use crate::cells::Sites;
 use crate::extract::Implicit;
-use crate::fit::{Fits, LocalFit};
+use crate::fit::Fits;
 use crate::kernel::wendland;
-use crate::octree::Octree;
+use crate::lanes::Lanes;
+use crate::local::LocalFit;
+use crate::neighborhood::Block;
+use crate::octree::{Octree, morton};
 use crate::orient::Signs;
 use glam::{DVec3, Vec3};
 
@@ -51,11 +54,27 @@ const REACH: f32 = 2.2;
 /// section 4.4).
 const FAR: f64 = 2.0;
 
-/// Scratch of one evaluating worker.
+/// Memory of one evaluating worker.
 #[derive(Debug, Default, Clone)]
 pub struct Scratch {
-    /// Sub-domain, weight, weight gradient.
-    weights: Vec<(u32, f32, Vec3)>,
+    /// Places of the positions along a Morton curve, and the positions in that order.
+    order: Vec<usize>,
+    points: Vec<Vec3>,
+    parts: Vec<Part>,
+}
+
+/// W_i of one sub-domain at eight positions, and its gradient.
+#[derive(Debug, Clone)]
+struct Part {
+    subdomain: u32,
+    weight: Lanes,
+    gradient: [Lanes; 3],
+}
+
+/// F and ∇F at eight positions; NaN where no sub-domain reaches.
+struct Blended {
+    value: Lanes,
+    gradient: [Lanes; 3],
 }
 
 impl<'a> Field<'a> {
@@ -120,56 +139,93 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// W_i and its gradient of every sub-domain that reaches `x`.
-    fn weights(&self, x: Vec3, out: &mut Vec<(u32, f32, Vec3)>) {
-        out.clear();
+    /// W_i and its gradient of every sub-domain that reaches one of a block's positions, by sub-domain.
+    fn weights(&self, block: &Block, parts: &mut Vec<Part>) {
+        parts.clear();
         self.tree.visit(
             |id, node| {
                 let r = self.node_reach[id];
-                node.distance2(x) < r * r
+                apart2((node.lo, node.hi), (block.lo, block.hi)) < r * r
             },
             |i| {
-                let r = self.reach[i];
-                let d = x - self.tree.points[i];
-                let d2 = d.length_squared();
-                if d2 < r * r {
-                    let (w, slope) = wendland((d2.sqrt() / r) as f64);
-                    let (w, gradient) = (w as f32, d * (slope as f32 / (r * r)));
-                    match out.iter_mut().find(|o| o.0 == self.owner[i]) {
-                        Some(o) => *o = (o.0, o.1 + w, o.2 + gradient),
-                        None => out.push((self.owner[i], w, gradient)),
+                let (p, r) = (self.tree.points[i], self.reach[i]);
+                if p.distance_squared(p.clamp(block.lo, block.hi)) >= r * r {
+                    return;
+                }
+                let [dx, dy, dz] = [0, 1, 2].map(|axis| block.at[axis] - Lanes::splat(p[axis]));
+                let length = (dx * dx + dy * dy + dz * dz).sqrt();
+                let (weight, slope) = wendland(length * Lanes::splat(1.0 / r));
+                let slope = slope * Lanes::splat(1.0 / (r * r));
+                let gradient = [slope * dx, slope * dy, slope * dz];
+                let subdomain = self.owner[i];
+                match parts.iter_mut().find(|part| part.subdomain == subdomain) {
+                    Some(part) => {
+                        part.weight += weight;
+                        for (sum, term) in part.gradient.iter_mut().zip(gradient) {
+                            *sum += term;
+                        }
                     }
+                    None => parts.push(Part {
+                        subdomain,
+                        weight,
+                        gradient,
+                    }),
                 }
             },
         );
+        // Sums in this order do not depend on which positions share a block.
+        parts.sort_unstable_by_key(|part| part.subdomain);
     }
 
-    /// F(x), `None` where no sub-domain reaches.
-    pub fn value(&self, x: Vec3, scratch: &mut Scratch) -> Option<f32> {
-        self.value_and_gradient(x, scratch).map(|v| v.0)
-    }
-
-    /// F(x) and ∇F(x), `None` where no sub-domain reaches.
-    pub fn value_and_gradient(&self, x: Vec3, scratch: &mut Scratch) -> Option<(f32, Vec3)> {
-        self.weights(x, &mut scratch.weights);
-        let mut total = 0.0;
-        let mut total_gradient = Vec3::ZERO;
-        let mut sum = 0.0;
-        let mut sum_gradient = Vec3::ZERO;
-        for &(s, w, dw) in &scratch.weights {
-            let sign = self.signs[s as usize];
-            let (f, df) = self.functions[s as usize].evaluate(x);
-            total += w;
-            total_gradient += dw;
-            sum += w * sign * f;
-            sum_gradient += dw * (sign * f) + df * (w * sign);
+    /// F(x) and ∇F(x) at a block's positions.
+    fn blend(&self, block: &Block, parts: &mut Vec<Part>) -> Blended {
+        self.weights(block, parts);
+        let mut total = [Lanes::ZERO; 4];
+        let mut sum = [Lanes::ZERO; 4];
+        for part in parts.iter() {
+            let s = part.subdomain as usize;
+            let (w, dw) = (part.weight, part.gradient);
+            let sign = Lanes::splat(self.signs[s]);
+            let (f, df) = self.functions[s].evaluate(block.at);
+            let (f, w_sign) = (f * sign, w * sign);
+            total[3] += w;
+            sum[3] += w * f;
+            for axis in 0..3 {
+                total[axis] += dw[axis];
+                sum[axis] += dw[axis] * f + df[axis] * w_sign;
+            }
         }
         // Below this the quotient is rounding; the next site is a whole reach away.
-        if total < 1e-6 {
-            return None;
+        let (one, least) = (Lanes::splat(1.0), Lanes::splat(1e-6));
+        let inverse = total[3].less(least, Lanes::splat(f32::NAN), one / total[3]);
+        let value = sum[3] * inverse;
+        Blended {
+            value,
+            gradient: [0, 1, 2].map(|axis| (sum[axis] - total[axis] * value) * inverse),
         }
-        let value = sum / total;
-        Some((value, (sum_gradient - total_gradient * value) / total))
+    }
+
+    /// [`Field::blend`] of all positions: `of` gets the places of up to eight that lie close together.
+    fn blend_all(
+        &self,
+        at: &[DVec3],
+        scratch: &mut Scratch,
+        mut of: impl FnMut(&[usize], Blended),
+    ) {
+        let Scratch {
+            order,
+            points,
+            parts,
+        } = scratch;
+        order.clear();
+        order.extend(0..at.len());
+        order.sort_by_cached_key(|&k| morton(at[k].as_vec3()));
+        points.clear();
+        points.extend(order.iter().map(|&k| at[k].as_vec3()));
+        for block in Block::all(points, 0..points.len()) {
+            let blended = self.blend(&block, parts);
+            of(&order[block.range], blended);
+        }
     }
 
     /// The winding number of the oriented sites around `x`: about 1 inside, 0 outside, between in a hole.
@@ -206,18 +262,36 @@ impl Implicit for Field<'_> {
         Scratch::default()
     }
 
-    fn local(&self, at: DVec3, scratch: &mut Scratch) -> Option<f64> {
-        self.value(at.as_vec3(), scratch).map(f64::from)
-    }
-
     fn global(&self, at: DVec3, _: &mut Scratch) -> f64 {
         self.extension(at)
     }
 
-    fn gradient(&self, at: DVec3, scratch: &mut Scratch) -> Option<(f64, DVec3)> {
-        let (value, gradient) = self.value_and_gradient(at.as_vec3(), scratch)?;
-        Some((value as f64, gradient.as_dvec3()))
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Scratch) {
+        self.blend_all(at, scratch, |places, blended| {
+            let value = blended.value.to_array();
+            for (&k, value) in places.iter().zip(value) {
+                values[k] = f64::from(value);
+            }
+        });
     }
+
+    fn gradients(&self, at: &[DVec3], found: &mut [Option<(f64, DVec3)>], scratch: &mut Scratch) {
+        self.blend_all(at, scratch, |places, blended| {
+            let (value, gradient) = (
+                blended.value.to_array(),
+                blended.gradient.map(Lanes::to_array),
+            );
+            for (l, &k) in places.iter().enumerate() {
+                let slope = Vec3::from_array(gradient.map(|g| g[l])).as_dvec3();
+                found[k] = (!value[l].is_nan()).then(|| (f64::from(value[l]), slope));
+            }
+        });
+    }
+}
+
+/// Squared distance between two boxes.
+fn apart2(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> f32 {
+    (a.0 - b.1).max(b.0 - a.1).max(Vec3::ZERO).length_squared()
 }
 
 /// Solid angle of a small patch of area vector `a` at `d`.

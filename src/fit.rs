@@ -9,73 +9,13 @@
 use crate::cells::{Growth, Sites, Subdomain};
 use crate::error::Result;
 use crate::kernel::phi;
+use crate::local::LocalFit;
 use crate::octree::Octree;
 use crate::par;
 use crate::params::{Kernel, Smoothing, SurfaceParams};
 use crate::progress::{Progress, Stage};
 use glam::Vec3;
 use nalgebra::{DMatrix, DVector};
-
-/// A fitted function f_i. Evaluated in single precision and in coordinates of its sub-domain, four centres at a time.
-#[derive(Debug, Clone)]
-pub struct LocalFit {
-    kernel: Kernel,
-    center: Vec3,
-    radius: f32,
-    /// x, y, z and weight of four centres; weight 0 where there is none.
-    centers: Vec<[[f32; 4]; 4]>,
-    /// λ0 … λ3 of eq. 10.
-    linear: [f32; 4],
-}
-
-impl LocalFit {
-    /// f(x) in lengths of the unit frame, and its gradient (about unit length near the surface).
-    pub fn evaluate(&self, x: Vec3) -> (f32, Vec3) {
-        let q = (x - self.center) / self.radius;
-        let mut value = [0.0f32; 4];
-        let mut gradient = [[0.0f32; 4]; 3];
-        match self.kernel {
-            Kernel::Triharmonic => {
-                for [cx, cy, cz, w] in &self.centers {
-                    for l in 0..4 {
-                        let (dx, dy, dz) = (q.x - cx[l], q.y - cy[l], q.z - cz[l]);
-                        let r2 = dx * dx + dy * dy + dz * dz;
-                        let wr = w[l] * r2.sqrt();
-                        value[l] += wr * r2;
-                        gradient[0][l] += wr * dx;
-                        gradient[1][l] += wr * dy;
-                        gradient[2][l] += wr * dz;
-                    }
-                }
-                gradient.iter_mut().flatten().for_each(|g| *g *= 3.0);
-            }
-            kernel => {
-                for [cx, cy, cz, w] in &self.centers {
-                    for l in 0..4 {
-                        let (dx, dy, dz) = (q.x - cx[l], q.y - cy[l], q.z - cz[l]);
-                        let (p, slope) = phi(kernel, (dx * dx + dy * dy + dz * dz) as f64);
-                        let slope = w[l] * slope as f32;
-                        value[l] += w[l] * p as f32;
-                        gradient[0][l] += slope * dx;
-                        gradient[1][l] += slope * dy;
-                        gradient[2][l] += slope * dz;
-                    }
-                }
-            }
-        }
-        let sum = |v: [f32; 4]| (v[0] + v[1]) + (v[2] + v[3]);
-        let [l0, l1, l2, l3] = self.linear;
-        let linear = Vec3::new(l1, l2, l3);
-        let gradient = Vec3::from_array(gradient.map(sum)) + linear;
-        ((sum(value) + l0 + linear.dot(q)) * self.radius, gradient)
-    }
-
-    /// First-order distance |f|/|∇f| of a point to f = 0.
-    pub fn distance(&self, x: Vec3) -> f32 {
-        let (value, gradient) = self.evaluate(x);
-        value.abs() / gradient.length().max(1e-3)
-    }
-}
 
 /// What the fit of all sub-domains gave.
 #[derive(Debug, Clone)]
@@ -164,12 +104,13 @@ impl Fitting<'_> {
     /// taken back.
     fn refine(&self, subdomain: Subdomain, cuts: usize, growth: &mut Growth) -> Vec<Refined> {
         let function = fit_one(&subdomain, self.sites, self.params);
-        let own = subdomain.support[..subdomain.core]
+        let own: Vec<u32> = subdomain.support[..subdomain.core]
             .iter()
-            .flat_map(|&i| &self.owned[i as usize]);
-        let residuals: Vec<(u32, f32)> = own
-            .map(|&i| (i, function.distance(self.input.points[i as usize])))
+            .flat_map(|&i| &self.owned[i as usize])
+            .copied()
             .collect();
+        let at: Vec<Vec3> = own.iter().map(|&i| self.input.points[i as usize]).collect();
+        let residuals: Vec<(u32, f32)> = own.into_iter().zip(function.distances(&at)).collect();
         let whole = vec![(subdomain, function, residuals)];
         let (subdomain, _, residuals) = &whole[0];
         let rms = (squares(&whole) / residuals.len().max(1) as f64).sqrt() as f32;
@@ -328,13 +269,10 @@ impl System {
     }
 
     fn fitted(&self, weights: &[f64], linear: [f64; 4]) -> LocalFit {
-        let mut centers = vec![[[0.0f32; 4]; 4]; weights.len().div_ceil(4)];
-        for (i, (c, &w)) in self.centers.iter().zip(weights).enumerate() {
-            let lanes = &mut centers[i / 4];
-            for (lane, value) in lanes.iter_mut().zip([c[0], c[1], c[2], w]) {
-                lane[i % 4] = value as f32;
-            }
-        }
+        let centers = self.centers.iter().zip(weights);
+        let centers = centers
+            .map(|(c, &w)| [c[0] as f32, c[1] as f32, c[2] as f32, w as f32])
+            .collect();
         let (kernel, center, radius) = (self.kernel, self.center, self.radius);
         LocalFit {
             kernel,

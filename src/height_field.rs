@@ -12,6 +12,7 @@ use glam::Vec3;
 
 use crate::clusters::{SHARES, Shares};
 use crate::error::Result;
+use crate::kernel::wendland;
 use crate::lanes::{LANES, Lanes};
 use crate::neighborhood::{Block, CELL, Neighborhood, bounds};
 use crate::octree::{Neighbor, Octree};
@@ -265,7 +266,11 @@ impl Fitting<'_> {
             let on_face = (agreement * sign).less(
                 Lanes::splat(FACE_COSINE),
                 Lanes::ZERO,
-                limit.less(stands_out * stands_out, Lanes::ZERO, wendland(length2)),
+                limit.less(
+                    stands_out * stands_out,
+                    Lanes::ZERO,
+                    wendland(length2.sqrt()).0,
+                ),
             );
             // The point itself, also where it has no normal.
             let weight = Lanes::ZERO.less(length2, on_face, one);
@@ -301,14 +306,6 @@ impl Fitting<'_> {
 
 fn farthest(found: &[Neighbor]) -> f32 {
     found.last().map_or(0.0, |n| n.distance2.sqrt())
-}
-
-/// Wendland's C² function (1 - t)⁴ (4t + 1), as [`crate::kernel::wendland`], of t².
-fn wendland(square: Lanes) -> Lanes {
-    let t = square.sqrt();
-    let rest = (Lanes::splat(1.0) - t).max(Lanes::ZERO);
-    let rest2 = rest * rest;
-    rest2 * rest2 * (Lanes::splat(4.0) * t + Lanes::splat(1.0))
 }
 
 /// The quadric through the face's members.

@@ -1,5 +1,6 @@
 //! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives.
 
+use crate::lanes::Lanes;
 use crate::params::Kernel;
 
 /// φ(r) and φ'(r)/r of the kernel, from r².
@@ -31,14 +32,15 @@ pub fn phi(kernel: Kernel, r2: f64) -> (f64, f64) {
 
 /// Wendland's C² function ψ(t) = (1 − t)⁴ (4t + 1) on [0, 1] and ψ'(t)/t, zero beyond (Wendland, "Piecewise polynomial,
 /// positive definite and compactly supported radial functions of minimal degree", 1995).
-#[inline]
-pub fn wendland(t: f64) -> (f64, f64) {
-    if t >= 1.0 {
-        return (0.0, 0.0);
-    }
-    let u = 1.0 - t;
+#[inline(always)]
+pub fn wendland(t: Lanes) -> (Lanes, Lanes) {
+    let one = Lanes::splat(1.0);
+    let u = (one - t).max(Lanes::ZERO);
     let u3 = u * u * u;
-    (u3 * u * (4.0 * t + 1.0), -20.0 * u3)
+    (
+        u3 * u * (Lanes::splat(4.0) * t + one),
+        u3 * Lanes::splat(-20.0),
+    )
 }
 
 #[cfg(test)]
@@ -58,11 +60,17 @@ mod tests {
                 );
             }
         }
-        for t in [0.1, 0.5, 0.9] {
-            let slope = (wendland(t + h).0 - wendland(t - h).0) / (2.0 * h);
-            assert!((slope - wendland(t).1 * t).abs() < 1e-7);
+        let wendland = |t: f32| {
+            let (value, slope) = wendland(Lanes::splat(t));
+            (f64::from(value.lane(0)), f64::from(slope.lane(0)))
+        };
+        let h = 1.0 / 128.0;
+        for t in [0.125, 0.5, 0.875] {
+            let slope = (wendland(t + h).0 - wendland(t - h).0) / f64::from(2.0 * h);
+            assert!((slope - wendland(t).1 * f64::from(t)).abs() < 2e-3);
         }
         assert_eq!(wendland(1.0), (0.0, 0.0));
+        assert_eq!(wendland(2.0), (0.0, 0.0));
         assert_eq!(wendland(0.0).0, 1.0);
     }
 }

@@ -61,6 +61,7 @@ pub mod paper;
 mod tolerance;
 pub mod reduce;
 pub mod cells;
+pub mod local;
 pub mod fit;
 pub mod orient;
 pub mod field;

@@ -68,16 +68,11 @@ pub fn orient(
         (Stage::Orient, progress),
         || (),
         |i, _| {
-            let at = |&site: &u32| {
-                fits.functions[i]
-                    .evaluate(sites.tree.points[site as usize])
-                    .1
-                    .normalize_or_zero()
-            };
-            fits.subdomains[i]
-                .support
-                .iter()
-                .map(at)
+            let support = fits.subdomains[i].support.iter();
+            let at: Vec<Vec3> = support.map(|&i| sites.tree.points[i as usize]).collect();
+            let values = fits.functions[i].evaluate_all(&at).into_iter();
+            values
+                .map(|v| v.1.normalize_or_zero())
                 .collect::<Vec<Vec3>>()
         },
     )?;
@@ -203,8 +198,7 @@ fn mutual_side(fits: &Fits, sites: &Sites, a: u32, b: u32) -> f32 {
     let side = |from: u32, to: u32| {
         let f = &fits.functions[from as usize];
         let (mut sum, mut size) = (0.0, 0.0);
-        for p in core(to) {
-            let value = f.evaluate(p).0;
+        for (value, _) in f.evaluate_all(&core(to).collect::<Vec<Vec3>>()) {
             sum += value;
             size += value.abs();
         }
@@ -515,9 +509,8 @@ fn highest(component: &[u32], fits: &Fits, sites: &Sites) -> (u32, f32) {
         }
     }
     let (_, s, i, axis) = best;
-    let slope = fits.functions[s as usize]
-        .evaluate(sites.tree.points[i as usize])
-        .1[axis];
+    let at = [sites.tree.points[i as usize]];
+    let slope = fits.functions[s as usize].evaluate_all(&at)[0].1[axis];
     (s, if slope < 0.0 { -1.0 } else { 1.0 })
 }
 

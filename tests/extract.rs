@@ -29,16 +29,24 @@ where
 
     fn scratch(&self) {}
 
-    fn local(&self, at: DVec3, (): &mut ()) -> Option<f64> {
-        (self.covered)(at).then(|| (self.value)(at))
-    }
-
     fn global(&self, at: DVec3, (): &mut ()) -> f64 {
         (self.global)(at)
     }
 
-    fn gradient(&self, at: DVec3, (): &mut ()) -> Option<(f64, DVec3)> {
-        (self.covered)(at).then(|| ((self.value)(at), gradient(&self.value, at)))
+    fn locals(&self, at: &[DVec3], values: &mut [f64], (): &mut ()) {
+        for (&x, value) in at.iter().zip(values) {
+            *value = if (self.covered)(x) {
+                (self.value)(x)
+            } else {
+                f64::NAN
+            };
+        }
+    }
+
+    fn gradients(&self, at: &[DVec3], found: &mut [Option<(f64, DVec3)>], (): &mut ()) {
+        for (&x, found) in at.iter().zip(found) {
+            *found = (self.covered)(x).then(|| ((self.value)(x), gradient(&self.value, x)));
+        }
     }
 }
 
