@@ -10,6 +10,7 @@ use crate::features::Features;
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::{Patches, cloud_distances};
+use crate::noise::Scales;
 use crate::octree::Octree;
 use crate::orient;
 use crate::outliers;
@@ -151,8 +152,14 @@ pub fn reconstruct(
         let found = "all points lie on one line or at one place".into();
         return Err(Error::Degenerate { found });
     }
-    let mut reduced = points_to_fit(&input, params, &mut clock)?;
-    let sites = sites(&reduced, features.noise, params.orient, &mut clock)?;
+    let (mut reduced, positions) = points_to_fit(&input, params, &mut clock)?;
+    let sites = sites(
+        &reduced,
+        &positions,
+        features.noise,
+        params.orient,
+        &mut clock,
+    )?;
     let subdomains = cells::divide(&sites, &mut clock)?;
     let fits = fit::fit(subdomains, &sites, tree, features.noise, params, &mut clock)?;
     if fits.functions.is_empty() {
@@ -376,7 +383,7 @@ fn points_to_fit(
     input: &Input,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
-) -> Result<Reduced> {
+) -> Result<(Reduced, Vec<Vec3>)> {
     let Input {
         cloud,
         tree,
@@ -386,7 +393,8 @@ fn points_to_fit(
     if let Some(params) = &params.reduce {
         let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
         if reduced.cloud.len() >= MIN_REDUCED.min(cloud.len()) {
-            return Ok(reduced);
+            let positions = reduced.cloud.points.clone();
+            return Ok((reduced, positions));
         }
     }
     let all = ReduceParams {
@@ -398,34 +406,36 @@ fn points_to_fit(
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    Ok(reduced)
+    Ok((reduced, features.denoised(tree)))
 }
 
-/// The reduced points as sites of the fit.
+/// The reduced points, at `positions`, as sites of the fit.
 fn sites(
     reduced: &Reduced,
+    positions: &[Vec3],
     input_noise: f32,
     orient: bool,
     progress: &mut dyn Progress,
 ) -> Result<Sites> {
     // Points that the unit frame leaves out are no part of a surface.
-    let points = &reduced.cloud.points;
-    let framed: Vec<u32> = (0..points.len() as u32)
-        .filter(|&i| points[i as usize].abs().max_element() <= 1.0)
+    let framed: Vec<u32> = (0..positions.len() as u32)
+        .filter(|&i| positions[i as usize].abs().max_element() <= 1.0)
         .collect();
-    let positions: Vec<Vec3> = framed.iter().map(|&i| points[i as usize]).collect();
-    let mut tree = Octree::build(&positions);
+    let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
+    let mut tree = Octree::build(&inside);
     for i in &mut tree.order {
         *i = framed[*i as usize];
     }
-    let features = Features::measure(&tree, progress)?;
-    let normals = match &reduced.cloud.normals {
-        Some(normals) => tree.order.iter().map(|&i| normals[i as usize]).collect(),
-        None => features.normals,
-    };
-    // Coarse sampling of curved parts looks like noise, so the reduced cloud is never noisier than its input.
-    let noise = features.noise.min(input_noise);
-    Sites::new(tree, normals, features.spacing, noise, !orient, progress)
+    let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
+    let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
+    let spacing = tree
+        .order
+        .iter()
+        .map(|&i| reduced.spacing[i as usize])
+        .collect();
+    // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
+    let noise = Scales::measure(&tree).noise.min(input_noise);
+    Sites::new(tree, normals, spacing, noise, !orient, progress)
 }
 
 /// How the surface of these sites is extracted.
