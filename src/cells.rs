@@ -88,6 +88,9 @@ const GRAPH: usize = 10;
 const MIN_COSINE: f32 = 0.342;
 /// Largest offset along the normal against the distance; sin 45° and a margin, so that a right-angled crease connects.
 const MAX_SLOPE: f32 = 0.75;
+/// Largest offset against the distance that both normals see on the same side. A bent sheet leaves one tangent plane
+/// downwards and meets the other from below: that is its turn, not a step. Two sheets are a step apart for both.
+const MAX_STEP: f32 = 0.25;
 /// Sites closer than this times their spacing are one centre: eq. 11 would be singular.
 const COINCIDENT: f32 = 0.02;
 
@@ -180,15 +183,17 @@ impl Subdomain {
 /// Whether two sites lie on the same sheet.
 fn compatible(sites: &Sites, i: u32, j: u32) -> bool {
     let (i, j) = (i as usize, j as usize);
-    let (a, b) = (sites.normals[i], sites.normals[j]);
+    let (a, mut b) = (sites.normals[i], sites.normals[j]);
+    if !sites.oriented && a.dot(b) < 0.0 {
+        b = -b;
+    }
     let d = sites.tree.points[j] - sites.tree.points[i];
-    let allowed = MAX_SLOPE * d.length() + 2.0 * sites.noise;
-    let cosine = if sites.oriented {
-        a.dot(b)
-    } else {
-        a.dot(b).abs()
-    };
-    cosine >= MIN_COSINE && a.dot(d).abs() <= allowed && b.dot(d).abs() <= allowed
+    let (length, noise) = (d.length(), 2.0 * sites.noise);
+    let (from, to) = (a.dot(d), b.dot(d));
+    let step = if from * to > 0.0 { from.abs().min(to.abs()) } else { 0.0 };
+    a.dot(b) >= MIN_COSINE
+        && from.abs().max(to.abs()) <= MAX_SLOPE * length + noise
+        && step <= MAX_STEP * length + noise
 }
 
 /// A step of growth: cost, site, and the site it was reached from. Costs are non-negative floats as ordered bits.
