@@ -12,7 +12,7 @@
 use crate::cells::Sites;
 use crate::extract::Implicit;
 use crate::fit::{Fits, LocalFit};
-use crate::kernel::wendland;
+use crate::kernel::{solid_angle, wendland};
 use crate::octree::Octree;
 use crate::orient::Signs;
 use glam::{DVec3, Vec3};
@@ -217,15 +217,5 @@ impl Implicit for Field<'_> {
     fn gradient(&self, at: DVec3, scratch: &mut Scratch) -> Option<(f64, DVec3)> {
         let (value, gradient) = self.value_and_gradient(at.as_vec3(), scratch)?;
         Some((value as f64, gradient.as_dvec3()))
-    }
-}
-
-/// Solid angle of a small patch of area vector `a` at `d`.
-fn solid_angle(d: DVec3, a: DVec3) -> f64 {
-    let r2 = d.length_squared();
-    if r2 > 0.0 {
-        d.dot(a) / (r2 * r2.sqrt())
-    } else {
-        0.0
     }
 }

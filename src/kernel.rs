@@ -1,6 +1,7 @@
-//! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives.
+//! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives; solid angles.
 
 use crate::params::Kernel;
+use glam::DVec3;
 
 /// φ(r) and φ'(r)/r of the kernel, from r².
 ///
@@ -64,5 +65,15 @@ mod tests {
         }
         assert_eq!(wendland(1.0), (0.0, 0.0));
         assert_eq!(wendland(0.0).0, 1.0);
+    }
+}
+
+/// Solid angle of a small patch of area vector `a` at `d`.
+pub fn solid_angle(d: DVec3, a: DVec3) -> f64 {
+    let r2 = d.length_squared();
+    if r2 > 0.0 {
+        d.dot(a) / (r2 * r2.sqrt())
+    } else {
+        0.0
     }
 }

@@ -13,8 +13,11 @@
 //! a tree can be mended.
 //!
 //! Every connected component then gets the sign that makes its enclosed volume positive; open sheets without a clear
-//! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis).
+//! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis). One that
+//! lies in the solid of an odd number of others is a cave's wall, and looks into the cave: nested shells bound the solid
+//! between them.
 
+use crate::caves::{Solid, caves};
 use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
@@ -91,7 +94,7 @@ pub fn orient(
     let edges = edges(fits, sites, &gradients);
     let adjacency = Adjacency::new(n, &edges);
     let mut signs = vec![1.0; n];
-    let mut components = adjacency.components();
+    let components = adjacency.components();
     if !sites.oriented {
         match propagation {
             Propagation::Paper => advancing_front(fits, sites, &edges, &adjacency, &mut signs),
@@ -102,9 +105,11 @@ pub fn orient(
                 flip_single(&edges, &adjacency, &mut signs);
             }
         }
-        for component in &mut components {
-            turn_outward(component, fits, sites, &gradients, &mut signs);
-        }
+        let is_solid: Vec<bool> = components
+            .iter()
+            .map(|c| turn_outward(c, fits, sites, &gradients, &mut signs))
+            .collect();
+        turn_caves(&components, &is_solid, fits, sites, &gradients, &mut signs);
     }
     let normals = site_normals(fits, sites, &gradients, &signs);
     let kept = kept(&components, fits);
@@ -499,14 +504,14 @@ fn highest(component: &[u32], fits: &Fits, sites: &Sites) -> (u32, f32) {
     (s, if slope < 0.0 { -1.0 } else { 1.0 })
 }
 
-/// Gives a component the sign that encloses a positive volume.
+/// Gives a component the sign that encloses a positive volume; whether it encloses a clear one.
 fn turn_outward(
     component: &[u32],
     fits: &Fits,
     sites: &Sites,
     gradients: &[Vec<Vec3>],
     signs: &mut [f32],
-) {
+) -> bool {
     let cores = || {
         component.iter().flat_map(|&s| {
             let subdomain = &fits.subdomains[s as usize];
@@ -532,16 +537,43 @@ fn turn_outward(
         .sum::<f64>()
         / 3.0;
     // A closed body has a volume of a third of `size` and more; a nearly flat sheet next to none.
-    let flip = if volume.abs() > 0.02 * size {
+    let is_solid = volume.abs() > 0.02 * size;
+    let flip = if is_solid {
         volume < 0.0
     } else {
         let (s, sign) = highest(component, fits, sites);
         sign != signs[s as usize]
     };
     if flip {
-        component
-            .iter()
-            .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+        turn(component, signs);
+    }
+    is_solid
+}
+
+fn turn(component: &[u32], signs: &mut [f32]) {
+    component
+        .iter()
+        .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+}
+
+/// Turns the solid components that an odd number of other solid ones have inside of them. All must look outward.
+fn turn_caves(
+    components: &[Vec<u32>],
+    is_solid: &[bool],
+    fits: &Fits,
+    sites: &Sites,
+    gradients: &[Vec<Vec3>],
+    signs: &mut [f32],
+) {
+    let kept = kept(components, fits);
+    let solids: Vec<Solid> = components
+        .iter()
+        .zip(is_solid)
+        .filter(|(c, is)| **is && kept[c[0] as usize])
+        .map(|(c, _)| Solid::new(c, fits, sites, gradients, signs))
+        .collect();
+    for cave in caves(&solids) {
+        turn(cave, signs);
     }
 }
 
