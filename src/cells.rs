@@ -55,14 +55,40 @@ impl Sites {
                 .map_or(spacing[i], |&m| spacing[i].min(MOST_SPACING * m))
         };
         let spacing = (0..spacing.len()).map(capped).collect();
-        Ok(Sites {
+        let mut sites = Sites {
             tree,
             normals,
             spacing,
             graph,
             noise,
             oriented,
-        })
+        };
+        if !oriented {
+            sites.mend_normals();
+        }
+        Ok(sites)
+    }
+
+    /// Gives a site whose normal agrees with no neighbour's the one of theirs that agrees with the most: where two sheets
+    /// are near, the plane through a site's neighbours may lie across both.
+    fn mend_normals(&mut self) {
+        let mend = |i: usize| {
+            let i = i as u32;
+            let count = |normal: Vec3| {
+                let near = self.graph.of(i).iter();
+                near.filter(|&&j| agree(self, (i, normal), j)).count()
+            };
+            let own = self.normals[i as usize];
+            if own == Vec3::ZERO || count(own) > 0 {
+                return own;
+            }
+            let near = self.graph.of(i).iter().map(|&j| self.normals[j as usize]);
+            let others = near.filter(|&n| n != Vec3::ZERO).map(|n| (count(n), n));
+            // The nearest of those with the most.
+            let best = others.reduce(|best, n| if n.0 > best.0 { n } else { best });
+            best.map_or(own, |(_, normal)| normal)
+        };
+        self.normals = par::map(self.normals.len(), || (), |i, ()| mend(i));
     }
 }
 
@@ -182,15 +208,24 @@ impl Subdomain {
 
 /// Whether two sites lie on the same sheet.
 fn compatible(sites: &Sites, i: u32, j: u32) -> bool {
+    agree(sites, (i, sites.normals[i as usize]), j)
+}
+
+/// [`compatible`] if site `i` had the normal `a`.
+fn agree(sites: &Sites, (i, a): (u32, Vec3), j: u32) -> bool {
     let (i, j) = (i as usize, j as usize);
-    let (a, mut b) = (sites.normals[i], sites.normals[j]);
+    let mut b = sites.normals[j];
     if !sites.oriented && a.dot(b) < 0.0 {
         b = -b;
     }
     let d = sites.tree.points[j] - sites.tree.points[i];
     let (length, noise) = (d.length(), 2.0 * sites.noise);
     let (from, to) = (a.dot(d), b.dot(d));
-    let step = if from * to > 0.0 { from.abs().min(to.abs()) } else { 0.0 };
+    let step = if from * to > 0.0 {
+        from.abs().min(to.abs())
+    } else {
+        0.0
+    };
     a.dot(b) >= MIN_COSINE
         && from.abs().max(to.abs()) <= MAX_SLOPE * length + noise
         && step <= MAX_STEP * length + noise
