@@ -34,7 +34,8 @@ pub fn reduced_to(kept: usize) -> SurfaceParams {
     }
 }
 
-/// Share of the fitted points whose normal looks to the side that the nearest input point's true normal looks to.
+/// Share of the fitted points whose normal looks to the side that the nearest input point's true normal looks to. An open
+/// sheet has no outside: there the larger share counts, of those that look either way.
 pub fn oriented_right(scan: &Scan, s: &Surface) -> f64 {
     let reduced = &s.cloud.reduced;
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
@@ -43,7 +44,12 @@ pub fn oriented_right(scan: &Scan, s: &Surface) -> f64 {
         .zip(&reduced.nearest)
         .filter(|&(n, &i)| n.as_dvec3().dot(scan.normals[i as usize]) > 0.0)
         .count();
-    right as f64 / normals.len().max(1) as f64
+    let share = right as f64 / normals.len().max(1) as f64;
+    if scan.truth.is_closed() {
+        share
+    } else {
+        share.max(1.0 - share)
+    }
 }
 
 pub fn signed_volume(s: &Surface) -> f64 {
