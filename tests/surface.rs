@@ -264,7 +264,7 @@ fn nested_shells_bound_the_solid_between_them() {
 
 #[test]
 fn thin_plates_have_two_sides() {
-    for (spacings, share) in [(3.0, 0.002), (1.5, 0.04)] {
+    for (spacings, share) in [(3.0, 0.002), (1.5, 0.02)] {
         let n = 6000;
         let half = (0..50).fold(0.0, |half: f64, _| {
             spacings / 2.0 * ((8.0 + 16.0 * half) / n as f64).sqrt()
