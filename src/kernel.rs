@@ -42,6 +42,16 @@ pub fn wendland(t: f64) -> (f64, f64) {
     (u3 * u * (4.0 * t + 1.0), -20.0 * u3)
 }
 
+/// Solid angle of a small patch of area vector `a` at `d`.
+pub fn solid_angle(d: DVec3, a: DVec3) -> f64 {
+    let r2 = d.length_squared();
+    if r2 > 0.0 {
+        d.dot(a) / (r2 * r2.sqrt())
+    } else {
+        0.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,15 +75,5 @@ mod tests {
         }
         assert_eq!(wendland(1.0), (0.0, 0.0));
         assert_eq!(wendland(0.0).0, 1.0);
-    }
-}
-
-/// Solid angle of a small patch of area vector `a` at `d`.
-pub fn solid_angle(d: DVec3, a: DVec3) -> f64 {
-    let r2 = d.length_squared();
-    if r2 > 0.0 {
-        d.dot(a) / (r2 * r2.sqrt())
-    } else {
-        0.0
     }
 }
