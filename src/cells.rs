@@ -55,14 +55,73 @@ impl Sites {
                 .map_or(spacing[i], |&m| spacing[i].min(MOST_SPACING * m))
         };
         let spacing = (0..spacing.len()).map(capped).collect();
-        Ok(Sites {
+        let mut sites = Sites {
             tree,
             normals,
             spacing,
             graph,
             noise,
             oriented,
-        })
+        };
+        if sites.noise > 0.0 {
+            let within = sites.noise_within_sheets();
+            if within < NOISE_OF_TWO * sites.noise {
+                sites.noise = within;
+            }
+        }
+        if !oriented {
+            sites.mend_normals();
+        }
+        Ok(sites)
+    }
+
+    /// The noise that neighbours' offsets along their normals tell of: most of a site's neighbours are on its own sheet, so
+    /// the smaller offsets are, and those are what the mean of two normals leaves, on every quadric 0 but for the noise.
+    fn noise_within_sheets(&self) -> f32 {
+        /// This share of the differences of two Gaussians is under [`WITHIN`] of their standard deviation: √2 · 0.385.
+        const SHARE: f32 = 0.3;
+        const WITHIN: f32 = 0.545;
+        let mut offsets: Vec<f32> = (0..self.normals.len())
+            .flat_map(|i| {
+                self.graph
+                    .of(i as u32)
+                    .iter()
+                    .map(move |&j| (i, j as usize))
+            })
+            .filter_map(|(i, j)| {
+                let (a, b) = (self.normals[i], self.normals[j]);
+                let mean = (if a.dot(b) < 0.0 { a - b } else { a + b }) / 2.0;
+                let offset = mean.dot(self.tree.points[j] - self.tree.points[i]);
+                (mean != Vec3::ZERO).then_some(offset.abs())
+            })
+            .collect();
+        if offsets.is_empty() {
+            return self.noise;
+        }
+        let k = (SHARE * offsets.len() as f32) as usize;
+        *offsets.select_nth_unstable_by(k, f32::total_cmp).1 / WITHIN
+    }
+
+    /// Gives a site whose normal agrees with no neighbour's the one of theirs that agrees with the most: where two sheets
+    /// are near, the plane through a site's neighbours may lie across both.
+    fn mend_normals(&mut self) {
+        let mend = |i: usize| {
+            let i = i as u32;
+            let count = |normal: Vec3| {
+                let near = self.graph.of(i).iter();
+                near.filter(|&&j| agree(self, (i, normal), j)).count()
+            };
+            let own = self.normals[i as usize];
+            if own == Vec3::ZERO || count(own) > 0 {
+                return own;
+            }
+            let near = self.graph.of(i).iter().map(|&j| self.normals[j as usize]);
+            let others = near.filter(|&n| n != Vec3::ZERO).map(|n| (count(n), n));
+            // The nearest of those with the most.
+            let best = others.reduce(|best, n| if n.0 > best.0 { n } else { best });
+            best.map_or(own, |(_, normal)| normal)
+        };
+        self.normals = par::map(self.normals.len(), || (), |i, ()| mend(i));
     }
 }
 
@@ -84,10 +143,15 @@ const CORE: usize = 16;
 const OVERLAP: [f32; 2] = [18.0, 34.0];
 /// Neighbours in the graph.
 const GRAPH: usize = 10;
+/// Noise within sheets under this share of the measured noise says that it was the distance of two sheets that was measured.
+const NOISE_OF_TWO: f32 = 0.5;
 /// Cosine of 70°, the largest turn between compatible normals.
 const MIN_COSINE: f32 = 0.342;
 /// Largest offset along the normal against the distance; sin 45° and a margin, so that a right-angled crease connects.
 const MAX_SLOPE: f32 = 0.75;
+/// Largest offset against the distance that both normals see on the same side. A bent sheet leaves one tangent plane
+/// downwards and meets the other from below: that is its turn, not a step. Two sheets are a step apart for both.
+const MAX_STEP: f32 = 0.25;
 /// Sites closer than this times their spacing are one centre: eq. 11 would be singular.
 const COINCIDENT: f32 = 0.02;
 
@@ -179,16 +243,27 @@ impl Subdomain {
 
 /// Whether two sites lie on the same sheet.
 fn compatible(sites: &Sites, i: u32, j: u32) -> bool {
+    agree(sites, (i, sites.normals[i as usize]), j)
+}
+
+/// [`compatible`] if site `i` had the normal `a`.
+fn agree(sites: &Sites, (i, a): (u32, Vec3), j: u32) -> bool {
     let (i, j) = (i as usize, j as usize);
-    let (a, b) = (sites.normals[i], sites.normals[j]);
+    let mut b = sites.normals[j];
+    if !sites.oriented && a.dot(b) < 0.0 {
+        b = -b;
+    }
     let d = sites.tree.points[j] - sites.tree.points[i];
-    let allowed = MAX_SLOPE * d.length() + 2.0 * sites.noise;
-    let cosine = if sites.oriented {
-        a.dot(b)
+    let (length, noise) = (d.length(), 2.0 * sites.noise);
+    let (from, to) = (a.dot(d), b.dot(d));
+    let step = if from * to > 0.0 {
+        from.abs().min(to.abs())
     } else {
-        a.dot(b).abs()
+        0.0
     };
-    cosine >= MIN_COSINE && a.dot(d).abs() <= allowed && b.dot(d).abs() <= allowed
+    a.dot(b) >= MIN_COSINE
+        && from.abs().max(to.abs()) <= MAX_SLOPE * length + noise
+        && step <= MAX_STEP * length + noise
 }
 
 /// A step of growth: cost, site, and the site it was reached from. Costs are non-negative floats as ordered bits.

@@ -85,7 +85,7 @@ pub const MOST_FILLED: f64 = 0.35;
 /// field's values only, not on threads or on the order of the points.
 ///
 /// Where no fitted function reaches,
-/// - `Open`: the surface ends, at most about 1.5 spacings (0.68 of a point's reach) beyond the points: it has no triangle
+/// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
 ///   in a cell with an unreached corner;
 /// - `Closed`: unreached corners take [`Implicit::global`]; the mesh has no boundary edge, the lattice's hull being
 ///   outside;

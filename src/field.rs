@@ -12,7 +12,7 @@
 use crate::cells::Sites;
 use crate::extract::Implicit;
 use crate::fit::Fits;
-use crate::kernel::wendland;
+use crate::kernel::{solid_angle, wendland};
 use crate::lanes::Lanes;
 use crate::local::LocalFit;
 use crate::neighborhood::Block;
@@ -292,14 +292,4 @@ impl Implicit for Field<'_> {
 /// Squared distance between two boxes.
 fn apart2(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> f32 {
     (a.0 - b.1).max(b.0 - a.1).max(Vec3::ZERO).length_squared()
-}
-
-/// Solid angle of a small patch of area vector `a` at `d`.
-fn solid_angle(d: DVec3, a: DVec3) -> f64 {
-    let r2 = d.length_squared();
-    if r2 > 0.0 {
-        d.dot(a) / (r2 * r2.sqrt())
-    } else {
-        0.0
-    }
 }

@@ -1,7 +1,8 @@
-//! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives.
+//! Radial basis functions φ(r) of eq. 9 and the weight of the partition of unity, with their derivatives; solid angles.
 
 use crate::lanes::Lanes;
 use crate::params::Kernel;
+use glam::DVec3;
 
 /// φ(r) and φ'(r)/r of the kernel, from r².
 ///
@@ -41,6 +42,16 @@ pub fn wendland(t: Lanes) -> (Lanes, Lanes) {
         u3 * u * (Lanes::splat(4.0) * t + one),
         u3 * Lanes::splat(-20.0),
     )
+}
+
+/// Solid angle of a small patch of area vector `a` at `d`.
+pub fn solid_angle(d: DVec3, a: DVec3) -> f64 {
+    let r2 = d.length_squared();
+    if r2 > 0.0 {
+        d.dot(a) / (r2 * r2.sqrt())
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! Which side is out: one sign a sub-domain (section 4.2, Algorithm 1).
 //!
-//! Sub-domains that share sites are joined by an edge whose weight says how well their *fitted functions* agree there:
-//! the mean cosine of the two gradients, −1 to 1, times the share of sites they have in common. Sub-domains that only
-//! touch (across a crease, or two sheets) look at each other instead: both see the other on the same side when both are
-//! oriented alike, be there material or air between them.
+//! Sub-domains are joined by edges whose weight says how well their *fitted functions* agree, from two kinds of evidence:
+//! - the cosine of the two gradients at each site that both hold;
+//! - for neighbouring sites of different sub-domains, how two dipoles along the gradients would rather stand:
+//!   side by side they look the same way, facing each other opposite ways, be there material or air between them. Sites
+//!   on one sheet, across a crease and on the two sides of a thin wall are all told right by the same formula. (It is
+//!   the Dirichlet energy of the winding number, which is 0 for a closed surface that looks out everywhere.)
 //!
 //! The energy of signs s is E = −Σ w_ab s_a s_b. [`Propagation::Paper`] is Algorithm 1: an advancing front with belief
 //! propagation on local graphs. [`Propagation::Global`] starts from the maximum spanning tree of |w| and then flips
@@ -11,8 +13,11 @@
 //! a tree can be mended.
 //!
 //! Every connected component then gets the sign that makes its enclosed volume positive; open sheets without a clear
-//! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis).
+//! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis). One that
+//! lies in the solid of an odd number of others is a cave's wall, and looks into the cave: nested shells bound the solid
+//! between them.
 
+use crate::caves::{Solid, caves};
 use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
@@ -47,8 +52,13 @@ struct Edge {
 /// A gradient of one sub-domain's function at one site.
 type Sample = (u32, u32, Vec3);
 
-/// Weight of an edge between sub-domains that share no site, against one of full overlap.
-const TOUCHING: f32 = 0.25;
+/// Weight of two neighbouring sites' dipoles against that of a shared site. Of two sheets a spacing or two apart some
+/// sub-domains hold sites of both, so what they share misleads, and there are more of those than of neighbours: on plates
+/// 1.5 spacings thick and on pigs of few points 5 to 30 do equally well, 3 and less do not.
+const DIPOLES: f32 = 10.0;
+/// Variance of the noise that a squared distance of dipoles is raised by, as their offset along the normal is partly noise:
+/// with 0 noisy sheets come apart, with 4 thin plates do not.
+const BLUR: f32 = 2.0;
 
 /// Sites of the smallest connected component that counts as a surface, unless it is the largest: fewer than a
 /// sub-domain's support cannot be told from scattered points.
@@ -79,7 +89,7 @@ pub fn orient(
     let edges = edges(fits, sites, &gradients);
     let adjacency = Adjacency::new(n, &edges);
     let mut signs = vec![1.0; n];
-    let mut components = adjacency.components();
+    let components = adjacency.components();
     if !sites.oriented {
         match propagation {
             Propagation::Paper => advancing_front(fits, sites, &edges, &adjacency, &mut signs),
@@ -90,9 +100,11 @@ pub fn orient(
                 flip_single(&edges, &adjacency, &mut signs);
             }
         }
-        for component in &mut components {
-            turn_outward(component, fits, sites, &gradients, &mut signs);
-        }
+        let is_solid: Vec<bool> = components
+            .iter()
+            .map(|c| turn_outward(c, fits, sites, &gradients, &mut signs))
+            .collect();
+        turn_caves(&components, &is_solid, fits, sites, &gradients, &mut signs);
     }
     let normals = site_normals(fits, sites, &gradients, &signs);
     let kept = kept(&components, fits);
@@ -148,70 +160,42 @@ fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
             .for_each(|&i| owner[i as usize] = s as u32);
     }
     samples.sort_unstable_by_key(|&(site, s, _)| (site, s));
-    // Pairs that share a site: (a, b, cosine).
-    let mut shared: Vec<(u32, u32, f32)> = Vec::new();
+    // What every pair says: (a, b, agreement).
+    let mut said: Vec<(u32, u32, f32)> = Vec::new();
     for group in samples.chunk_by(|x, y| x.0 == y.0) {
         for (k, &(_, a, ga)) in group.iter().enumerate() {
-            shared.extend(group[k + 1..].iter().map(|&(_, b, gb)| (a, b, ga.dot(gb))));
+            said.extend(group[k + 1..].iter().map(|&(_, b, gb)| (a, b, ga.dot(gb))));
         }
     }
-    // Pairs that only touch: (a, b, 0), once a neighbouring pair of sites.
+    let unsigned = vec![1.0; fits.subdomains.len()];
+    let normals = site_normals(fits, sites, gradients, &unsigned);
     for i in 0..n_sites as u32 {
         for &j in sites.graph.of(i) {
             let (a, b) = (owner[i as usize], owner[j as usize]);
             if a != b && a != u32::MAX && b != u32::MAX {
-                shared.push((a.min(b), a.max(b), 0.0));
+                let dipoles = dipoles(sites, &normals, i, j);
+                said.push((a.min(b), a.max(b), DIPOLES * dipoles));
             }
         }
     }
-    shared.sort_unstable_by(|x, y| (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2)));
-    shared
-        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
+    said.sort_unstable_by(|x, y| (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2)));
+    let size = |s: u32| fits.subdomains[s as usize].support.len();
+    said.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
         .filter_map(|pair| {
             let (a, b) = (pair[0].0, pair[0].1);
             let sum: f32 = pair.iter().map(|p| p.2).sum();
-            let [fewer, common] = [
-                fits.subdomains[a as usize]
-                    .support
-                    .len()
-                    .min(fits.subdomains[b as usize].support.len()),
-                pair.iter().filter(|p| p.2 != 0.0).count(),
-            ];
-            let weight = match common {
-                0 => TOUCHING * mutual_side(fits, sites, a, b),
-                _ => sum / fewer as f32,
-            };
+            let weight = sum / (size(a).min(size(b)) as f32 * (1.0 + DIPOLES));
             (weight != 0.0).then_some(Edge { a, b, weight })
         })
         .collect()
 }
 
-/// How two sub-domains that share no site see each other, −1 to 1: positive when each has the other's core on the same
-/// side of its function.
-fn mutual_side(fits: &Fits, sites: &Sites, a: u32, b: u32) -> f32 {
-    let core = |s: u32| {
-        let s = &fits.subdomains[s as usize];
-        s.support[..s.core]
-            .iter()
-            .map(|&i| sites.tree.points[i as usize])
-    };
-    let side = |from: u32, to: u32| {
-        let f = &fits.functions[from as usize];
-        let (mut sum, mut size) = (0.0, 0.0);
-        for (value, _) in f.evaluate_all(&core(to).collect::<Vec<Vec3>>()) {
-            sum += value;
-            size += value.abs();
-        }
-        // Sites on both sides say nothing; neither do sites on the function's own sheet.
-        let mean = core(from).sum::<Vec3>() / core(from).count() as f32;
-        let distance: f32 = core(to).map(|p| p.distance(mean)).sum();
-        if size > 0.0 {
-            sum / size * (2.0 * size / distance).min(1.0)
-        } else {
-            0.0
-        }
-    };
-    side(a, b) * side(b, a)
+/// How much the dipoles along two sites' normals want to stand as they do, −2 to 2.
+fn dipoles(sites: &Sites, normals: &[Vec3], i: u32, j: u32) -> f32 {
+    let (m, n) = (normals[i as usize], normals[j as usize]);
+    let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
+    let square = d.length_squared() + BLUR * sites.noise * sites.noise;
+    m.dot(n) - 3.0 * m.dot(d) * n.dot(d) / square.max(f32::MIN_POSITIVE)
 }
 
 /// Edges by sub-domain.
@@ -514,14 +498,14 @@ fn highest(component: &[u32], fits: &Fits, sites: &Sites) -> (u32, f32) {
     (s, if slope < 0.0 { -1.0 } else { 1.0 })
 }
 
-/// Gives a component the sign that encloses a positive volume.
+/// Gives a component the sign that encloses a positive volume; whether it encloses a clear one.
 fn turn_outward(
     component: &[u32],
     fits: &Fits,
     sites: &Sites,
     gradients: &[Vec<Vec3>],
     signs: &mut [f32],
-) {
+) -> bool {
     let cores = || {
         component.iter().flat_map(|&s| {
             let subdomain = &fits.subdomains[s as usize];
@@ -547,16 +531,43 @@ fn turn_outward(
         .sum::<f64>()
         / 3.0;
     // A closed body has a volume of a third of `size` and more; a nearly flat sheet next to none.
-    let flip = if volume.abs() > 0.02 * size {
+    let is_solid = volume.abs() > 0.02 * size;
+    let flip = if is_solid {
         volume < 0.0
     } else {
         let (s, sign) = highest(component, fits, sites);
         sign != signs[s as usize]
     };
     if flip {
-        component
-            .iter()
-            .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+        turn(component, signs);
+    }
+    is_solid
+}
+
+fn turn(component: &[u32], signs: &mut [f32]) {
+    component
+        .iter()
+        .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+}
+
+/// Turns the solid components that an odd number of other solid ones have inside of them. All must look outward.
+fn turn_caves(
+    components: &[Vec<u32>],
+    is_solid: &[bool],
+    fits: &Fits,
+    sites: &Sites,
+    gradients: &[Vec<Vec3>],
+    signs: &mut [f32],
+) {
+    let kept = kept(components, fits);
+    let solids: Vec<Solid> = components
+        .iter()
+        .zip(is_solid)
+        .filter(|(c, is)| **is && kept[c[0] as usize])
+        .map(|(c, _)| Solid::new(c, fits, sites, gradients, signs))
+        .collect();
+    for cave in caves(&solids) {
+        turn(cave, signs);
     }
 }
 

@@ -11,8 +11,12 @@ use crate::params::Boundary;
 use crate::report::Sets;
 use glam::Vec3;
 
-/// An open surface ends this share of a point's reach away from it. Reaches are some 2.2 spacings, so that is 1.5.
-const RIM: f32 = 0.68;
+/// An open surface ends within this share of a point's reach of it. Reaches are some 2.2 spacings, so that is 1.3, and what
+/// the rim is smoothed by stays within 1.5.
+const RIM: f32 = 0.6;
+/// Points at the end of a surface have half as many neighbours as others and seem to be farther apart: the reach that
+/// counts is the median of so many.
+const AROUND: usize = 24;
 /// A component that is the nearest one to fewer points than this is a phantom: stragglers off a noisy surface make such,
 /// up to about 10 of them together were seen at a noise of 0.5 % of the diagonal.
 const LEAST_POINTS: u32 = SMALLEST as u32;
@@ -101,8 +105,8 @@ pub(crate) fn summarise(dual: &Dual) -> (f64, usize, usize) {
     (if area > 0.0 { filled / area } else { 0.0 }, closed, open)
 }
 
-/// Drops what hangs on an open end farther from every point than [`RIM`] of its reach, from the end inwards: gaps of the
-/// sampling inside of the surface stay closed.
+/// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps
+/// of the sampling inside of the surface stay closed.
 pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
     let mut degree = degrees(dual);
     let is_end = |v: u32, degree: &[u8]| degree[v as usize] < dual.vertices[v as usize].degree;
@@ -113,15 +117,27 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         return;
     }
     let tree = Octree::build(points);
-    let is_far = |quad: &Quad| {
-        let centre = quad
+    let mut found = Vec::new();
+    let mut is_far = |quad: &Quad| {
+        let beyond = |v: u32| {
+            let p = dual.vertices[v as usize].position;
+            (tree.nearest(p), p)
+        };
+        let farthest = quad
             .vertices
+            .map(beyond)
+            .into_iter()
+            .max_by(|a, b| a.0.distance2.total_cmp(&b.0.distance2));
+        let Some((nearest, p)) = farthest else {
+            return false;
+        };
+        tree.knn(p, AROUND, &mut found);
+        let mut reaches: Vec<f32> = found
             .iter()
-            .map(|&v| dual.vertices[v as usize].position)
-            .sum::<Vec3>()
-            / 4.0;
-        let nearest = tree.nearest(centre);
-        let rim = RIM * reach[tree.order[nearest.index as usize] as usize];
+            .map(|n| reach[tree.order[n.index as usize] as usize])
+            .collect();
+        reaches.sort_unstable_by(f32::total_cmp);
+        let rim = RIM * reaches[reaches.len() / 2];
         nearest.distance2 > rim * rim
     };
     let around = quads_around(dual);

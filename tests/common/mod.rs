@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // every test file takes what it needs
 
+pub mod mesh;
+
 use glam::{DVec3, Vec3};
 use pointweave::clusters::{SHARES, Shares};
 use pointweave::height_field::{Patches, cloud_distances};
