@@ -11,7 +11,6 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::density::Density;
 use crate::error::Result;
 use crate::features::Features;
 use crate::lanes::{LANES, Lanes, places_within};
@@ -53,8 +52,8 @@ pub struct Samples<'a> {
     pub points: &'a [Vec3],
     /// Their spacing is used.
     pub features: &'a Features,
-    /// The wanted density.
-    pub density: &'a Density,
+    /// The wanted spacing.
+    pub spacing: &'a [f32],
 }
 
 /// The centres of all cells.
@@ -185,8 +184,8 @@ impl Cell {
         for k in range.clone() {
             lo = lo.min(samples.points[k]);
             hi = hi.max(samples.points[k]);
-            sum += samples.density.spacing[k];
-            widest = widest.max(samples.density.spacing[k]);
+            sum += samples.spacing[k];
+            widest = widest.max(samples.spacing[k]);
         }
         Cell {
             origin: 0.5 * (lo + hi),
@@ -203,7 +202,7 @@ impl Cell {
 fn start(samples: Samples, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
     let chosen = par::map(ranges.len(), Traversal::default, |i, traversal| {
         let points = &samples.points[ranges[i].clone()];
-        traversal.load(points, &samples.density.spacing[ranges[i].clone()]);
+        traversal.load(points, &samples.spacing[ranges[i].clone()]);
         let mean = points.iter().sum::<Vec3>() / points.len() as f32;
         let away = |&a: &usize, &b: &usize| {
             let distance = |k: usize| points[k].distance_squared(mean);
@@ -351,7 +350,7 @@ impl Scratch {
         self.weight.clear();
         for k in cell.range.clone() {
             // w = ρ²/f with ρ = 1/h² and 1/f the area of surface that the point stands for.
-            let h = samples.density.spacing[k] / cell.unit;
+            let h = samples.spacing[k] / cell.unit;
             let area = (samples.features.spacing[k] / cell.unit).powi(2);
             self.spacing.push(h);
             self.weight.push(area / (h * h * h * h));

@@ -95,11 +95,23 @@ pub struct Placed {
     pub variation: f32,
 }
 
-/// Places every centre.
+/// The area of surface that each centre stands for: that of the points, as they are shared.
+pub fn areas(features: &Features, shares: &[Shares], centers: usize) -> Vec<f64> {
+    let mut areas = vec![0.0; centers];
+    for (s, &spacing) in shares.iter().zip(&features.spacing) {
+        let area = f64::from(spacing).powi(2);
+        for (i, u) in s.used() {
+            areas[i as usize] += f64::from(u) * area;
+        }
+    }
+    areas
+}
+
+/// Places every centre. `areas` are those that they stand for.
 pub fn place(
     points: &[Vec3],
     features: &Features,
-    centers: &[Vec3],
+    (centers, areas): (&[Vec3], &[f64]),
     members: &Members,
     (placement, fuzzifier): (Placement, Fuzzifier),
 ) -> Vec<Placed> {
@@ -111,7 +123,7 @@ pub fn place(
             for (k, u) in members.of(i) {
                 sums.add(points, features, k as usize, u, fuzzifier);
             }
-            sums.place(centers[i], placement)
+            sums.place(centers[i], areas[i].sqrt(), placement)
         },
     )
 }
@@ -125,7 +137,6 @@ struct Sums {
     /// Σ n nᵀ, and Σ n nᵀ x.
     normals: [f64; 6],
     planes: DVec3,
-    area: f64,
     membership: f64,
     variation: f64,
 }
@@ -155,17 +166,16 @@ impl Sums {
             *sum += w * product;
         }
         self.planes += w * n.dot(x) * n;
-        self.area += u * area;
         self.membership += u;
         self.variation += u * f64::from(features.variation[k]);
     }
 
-    fn place(&self, center: Vec3, placement: Placement) -> Placed {
+    fn place(&self, center: Vec3, spacing: f64, placement: Placement) -> Placed {
         if self.weight == 0.0 {
             return Placed {
                 position: center,
                 normal: Vec3::ZERO,
-                spacing: 0.0,
+                spacing: spacing as f32,
                 variation: 0.0,
             };
         }
@@ -177,7 +187,6 @@ impl Sums {
         } else {
             DVec3::ZERO
         };
-        let spacing = self.area.sqrt();
         let position = match placement {
             Placement::Center => center.as_dvec3(),
             Placement::Mesh | Placement::Implicit | Placement::Sample => {

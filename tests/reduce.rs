@@ -20,7 +20,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 fn run(cloud: &Cloud, params: &ReduceParams) -> Reduced {
     let tree = Octree::build(&cloud.points);
     let features = Features::measure(&tree, &mut Silent).unwrap();
-    let reduced = reduce(cloud, &tree, &features, params, &mut Silent).unwrap();
+    let reduced = reduce(cloud, &tree, features, params, &mut Silent).unwrap();
     assert_sound(cloud, &reduced);
     reduced
 }
@@ -1053,7 +1053,7 @@ fn a_listener_stops_it_at_any_stage() {
             let stopped = reduce(
                 &cloud,
                 &tree,
-                &features,
+                features.clone(),
                 &params,
                 &mut |s: Stage, _: f32| s != stage,
             );
@@ -1079,7 +1079,7 @@ fn a_listener_stops_it_at_any_stage() {
         fuzzifier: Some(1.0),
         ..Default::default()
     };
-    let refused = reduce(&cloud, &tree, &features, &bad, &mut Silent)
+    let refused = reduce(&cloud, &tree, features, &bad, &mut Silent)
         .err()
         .unwrap();
     assert_eq!(refused.code(), "bad-option");
