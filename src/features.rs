@@ -120,10 +120,9 @@ impl Features {
         )
     }
 
-    /// The points moved onto the surface.
-    pub fn denoised(&self, tree: &Octree) -> Vec<Vec3> {
-        let moved = |i: usize| tree.points[i] - self.residual[i] * self.normals[i];
-        (0..tree.points.len()).map(moved).collect()
+    /// Point `i` of the tree, moved onto the surface.
+    pub fn denoised(&self, tree: &Octree, i: usize) -> Vec3 {
+        tree.points[i] - self.residual[i] * self.normals[i]
     }
 
     /// Median of the spacing.

@@ -144,9 +144,11 @@ fn reduce_input(
     } = Input::new(cloud, params.outliers, &mut clock)?;
     let noise = features.noise;
     let mut reduced = reduce::reduce(&cloud, &tree, features, params, &mut clock)?;
+    drop(cloud);
+    let points = tree.into_points();
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
-    let distances = cloud_distances(&tree.points, &reduced.shares, &patches, &mut clock)?;
+    let distances = cloud_distances(|k| points[k], &reduced.shares, &patches, &mut clock)?;
     let distance = DistanceStats::of(distances.into_iter().map(f64::from));
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);

@@ -94,23 +94,27 @@ pub fn reduce(
 ) -> Result<Reduced> {
     params.validate()?;
     let power = Fuzzifier::new(fuzzifier(params));
-    let mut job = Job::new(tree, features, params);
+    let mut job = Job {
+        tree,
+        features,
+        params,
+    };
     let (goal, reason) = job.goal(progress)?;
     let searched = match params.target {
         Target::Tolerance(_) => tolerance::DONE,
         _ => 0.0,
     };
-    // The goal has made of it what it needs.
+    // Only the goal asks for it.
     job.features.curvature = Vec::new();
     let plan = job.plan(&goal);
     let (clustering, index) = job.cluster(goal, &mut Part::new(progress, searched..1.0))?;
     progress.update(Stage::Place, 0.0)?;
-    let lying = job.lying(&clustering, index);
+    let arrangement = job.arrangement(&clustering, index);
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let mut placed = job.place(&clustering, &lying, &members, plan);
+    let mut placed = job.place(&clustering, &arrangement, &members, plan);
     drop(job);
-    let stats = stats(tree, &clustering, &lying.around, power);
-    drop((lying, clustering.spacing));
+    let stats = stats(tree, &clustering, &arrangement.around, power);
+    drop((arrangement, clustering.spacing));
     progress.update(Stage::Place, 0.5)?;
     let nearest = if plan.placement == Placement::Sample {
         placement::snap(tree, &members, &mut placed)
@@ -176,31 +180,18 @@ struct Plan {
 /// What a reduction works on.
 struct Job<'a> {
     tree: &'a Octree,
-    /// Without residuals: the points are denoised.
     features: Features,
-    denoised: Vec<Vec3>,
     params: &'a ReduceParams,
 }
 
-/// How centres lie before they are placed.
-struct Lying {
+/// How centres lie to each other before they are placed.
+struct Arrangement {
     /// The area of surface that each stands for.
     areas: Vec<f64>,
     around: Vec<Around>,
 }
 
 impl Job<'_> {
-    fn new<'a>(tree: &'a Octree, mut features: Features, params: &'a ReduceParams) -> Job<'a> {
-        let denoised = features.denoised(tree);
-        features.residual = Vec::new();
-        Job {
-            tree,
-            features,
-            denoised,
-            params,
-        }
-    }
-
     /// What to do, and why it is not what was asked for, where it is not.
     fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal, String)> {
         let n = self.tree.points.len();
@@ -242,13 +233,14 @@ impl Job<'_> {
             if clustering.centers.len() == n {
                 return Ok(None);
             }
-            let lying = self.lying(&clustering, index);
+            let arrangement = self.arrangement(&clustering, index);
             let members = Members::new(&clustering.shares, clustering.centers.len());
-            let placed = self.place(&clustering, &lying, &members, plan);
+            let placed = self.place(&clustering, &arrangement, &members, plan);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
-            cloud_distances(&self.denoised, &clustering.shares, &patches, progress).map(Some)
+            let denoised = |k| self.features.denoised(self.tree, k);
+            cloud_distances(denoised, &clustering.shares, &patches, progress).map(Some)
         })?;
         Ok(goal(chord))
     }
@@ -258,7 +250,6 @@ impl Job<'_> {
         let Job {
             tree,
             features,
-            denoised,
             params,
         } = self;
         match goal {
@@ -267,13 +258,9 @@ impl Job<'_> {
             }
             Goal::Flatness => paper::cluster(tree, features, None, params, progress),
             Goal::Count(count) => paper::cluster(tree, features, Some(count), params, progress),
-            Goal::Density(count, density) => adaptive(
-                tree,
-                (denoised, features),
-                (count, density),
-                params,
-                progress,
-            ),
+            Goal::Density(count, density) => {
+                adaptive(tree, features, (count, density), params, progress)
+            }
         }
     }
 
@@ -294,34 +281,34 @@ impl Job<'_> {
         }
     }
 
-    /// How the centres lie; `index` is their tree.
-    fn lying(&self, clustering: &Clustering, index: Octree) -> Lying {
+    /// `index` is a tree of the centres.
+    fn arrangement(&self, clustering: &Clustering, index: Octree) -> Arrangement {
         let areas = placement::areas(&self.features, &clustering.shares, clustering.centers.len());
         let around = surroundings::measure(&index, |i| areas[i].sqrt() as f32);
-        Lying { areas, around }
+        Arrangement { areas, around }
     }
 
     fn place(
         &self,
         clustering: &Clustering,
-        lying: &Lying,
+        arrangement: &Arrangement,
         members: &Members,
         plan: Plan,
     ) -> Vec<Placed> {
         let power = Fuzzifier::new(fuzzifier(self.params));
         let mut placed = placement::place(
-            &self.denoised,
+            self.tree,
             &self.features,
-            (&clustering.centers, &lying.areas),
+            (&clustering.centers, &arrangement.areas),
             members,
             (plan.placement, power),
         );
         if plan.to_borders {
             borders::restore(
                 self.tree,
-                (&self.denoised, &self.features),
+                &self.features,
                 members,
-                &lying.around,
+                &arrangement.around,
                 &mut placed,
             );
         }
@@ -356,7 +343,7 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 
 fn adaptive(
     tree: &Octree,
-    (points, features): (&[Vec3], &Features),
+    features: &Features,
     (count, density): (usize, Density),
     params: &ReduceParams,
     progress: &mut dyn Progress,
@@ -367,7 +354,7 @@ fn adaptive(
     let Density { spacing, share } = density;
     drop(share);
     let samples = Samples {
-        points,
+        tree,
         features,
         spacing: &spacing,
     };
