@@ -18,10 +18,10 @@ const EMPTY: [f32; 2] = [0.85, 1.6];
 /// Members farther from the line outwards do not tell how far out it goes, in spacings.
 const ASIDE: f32 = 0.6;
 
-/// Moves the centres next to open borders. `points` are the tree's, denoised.
+/// Moves the centres next to open borders.
 pub(crate) fn restore(
     tree: &Octree,
-    (points, features): (&[Vec3], &Features),
+    features: &Features,
     members: &Members,
     around: &[Around],
     placed: &mut [Placed],
@@ -34,13 +34,7 @@ pub(crate) fn restore(
         || (),
         |j, ()| {
             let i = unbalanced[j];
-            outermost(
-                tree,
-                (points, features),
-                members.own(i),
-                &placed[i],
-                -around[i].mean,
-            )
+            outermost(tree, features, members.own(i), &placed[i], -around[i].mean)
         },
     );
     for (&i, position) in unbalanced.iter().zip(moved) {
@@ -53,7 +47,7 @@ pub(crate) fn restore(
 /// Where a centre at a border belongs; `None` where there is none.
 fn outermost(
     tree: &Octree,
-    (points, features): (&[Vec3], &Features),
+    features: &Features,
     members: impl Iterator<Item = u32>,
     placed: &Placed,
     outward: Vec3,
@@ -69,7 +63,7 @@ fn outermost(
     let mut farthest: Option<(f32, usize)> = None;
     for k in members {
         let k = k as usize;
-        let d = points[k] - position;
+        let d = features.denoised(tree, k) - position;
         let way = d.dot(outward);
         if d.dot(aside).abs() < ASIDE * spacing && farthest.is_none_or(|(most, _)| way > most) {
             farthest = Some((way, k));
@@ -77,13 +71,14 @@ fn outermost(
     }
     let (_, k) = farthest.filter(|&(way, _)| way > 0.0)?;
     let radius = (EMPTY[0] * spacing).max(EMPTY[1] * features.spacing[k]);
+    let last = features.denoised(tree, k);
     let onwards = outward.reject_from(features.normals[k]).try_normalize()?;
     let away = |p: Vec3| tree.nearest(p).distance2.sqrt();
-    if away(points[k] + radius * onwards) < 0.95 * radius {
+    if away(last + radius * onwards) < 0.95 * radius {
         return None;
     }
-    let straight = points[k] - (points[k] - position).dot(aside) * aside;
+    let straight = last - (last - position).dot(aside) * aside;
     // Next to a corner straight out can be off the sheet.
     let off = away(straight) > 0.75 * features.spacing[k];
-    Some(if off { points[k] } else { straight })
+    Some(if off { last } else { straight })
 }

@@ -11,7 +11,6 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::density::Density;
 use crate::error::Result;
 use crate::features::Features;
 use crate::lanes::{LANES, Lanes, places_within};
@@ -49,12 +48,18 @@ pub struct Settling {
 /// What is clustered, in the octree's order.
 #[derive(Clone, Copy)]
 pub struct Samples<'a> {
-    /// Positions, denoised.
-    pub points: &'a [Vec3],
-    /// Their spacing is used.
+    /// Positions.
+    pub tree: &'a Octree,
+    /// By which they are denoised; their spacing is used too.
     pub features: &'a Features,
-    /// The wanted density.
-    pub density: &'a Density,
+    /// The wanted spacing.
+    pub spacing: &'a [f32],
+}
+
+impl Samples<'_> {
+    fn point(&self, k: usize) -> Vec3 {
+        self.features.denoised(self.tree, k)
+    }
 }
 
 /// The centres of all cells.
@@ -156,7 +161,7 @@ pub fn cluster(
             scratch.narrow(start - cell.range.start);
             for k in start..(start + LANES).min(cell.range.end) {
                 let near = scratch.near.iter().map(|&c| cell.reach[c as usize]);
-                shares.push(Shares::of(samples.points[k], &centers, near, fuzzifier));
+                shares.push(Shares::of(samples.point(k), &centers, near, fuzzifier));
             }
         }
         shares
@@ -164,7 +169,7 @@ pub fn cluster(
     let mut last = Part::new(progress, 0.9..1.0);
     let shares = par::flat_map_progress(
         cells.len(),
-        samples.points.len(),
+        samples.tree.points.len(),
         20.0,
         (Stage::Cluster, &mut last),
         Scratch::default,
@@ -183,10 +188,11 @@ impl Cell {
         let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (mut sum, mut widest) = (0.0, 0.0f32);
         for k in range.clone() {
-            lo = lo.min(samples.points[k]);
-            hi = hi.max(samples.points[k]);
-            sum += samples.density.spacing[k];
-            widest = widest.max(samples.density.spacing[k]);
+            let p = samples.point(k);
+            lo = lo.min(p);
+            hi = hi.max(p);
+            sum += samples.spacing[k];
+            widest = widest.max(samples.spacing[k]);
         }
         Cell {
             origin: 0.5 * (lo + hi),
@@ -202,8 +208,8 @@ impl Cell {
 /// maximum intercluster distance", 1985): deterministic, and at four iterations 20-25 % less error than random starts.
 fn start(samples: Samples, ranges: &[Range<usize>], quotas: &[usize]) -> Vec<Vec3> {
     let chosen = par::map(ranges.len(), Traversal::default, |i, traversal| {
-        let points = &samples.points[ranges[i].clone()];
-        traversal.load(points, &samples.density.spacing[ranges[i].clone()]);
+        let points: Vec<Vec3> = ranges[i].clone().map(|k| samples.point(k)).collect();
+        traversal.load(&points, &samples.spacing[ranges[i].clone()]);
         let mean = points.iter().sum::<Vec3>() / points.len() as f32;
         let away = |&a: &usize, &b: &usize| {
             let distance = |k: usize| points[k].distance_squared(mean);
@@ -271,6 +277,9 @@ const TAKEN: f32 = -1.0;
 
 /// Finds the centres within each cell's reach; at least the nearest one.
 fn gather(cells: &mut [Cell], centers: &[Vec3]) -> Octree {
+    for cell in &mut *cells {
+        cell.reach = Vec::new();
+    }
     let index = Octree::build(centers);
     let reaches = par::map(
         cells.len(),
@@ -303,30 +312,36 @@ fn sweep<P: Power<Lanes> + Send + Sync>(
     cells: &[Cell],
     centers: &mut [Vec3],
 ) -> f64 {
-    let parts = par::map(cells.len(), Scratch::default, |i, scratch| {
-        let cell = &cells[i];
-        scratch.load(samples, cell, centers);
-        scratch.accumulate(power);
-        let total = |sums: &[Lanes; 4]| sums.map(Lanes::sum);
-        scratch.sums.iter().map(total).collect::<Vec<[f32; 4]>>()
-    });
-    // Sums of Σ w, Σ w (x - v): the movement is small against the position.
-    let mut sums = vec![(0.0f64, DVec3::ZERO, 0.0f64); centers.len()];
-    for (cell, part) in cells.iter().zip(parts) {
-        for (&i, [w, x, y, z]) in cell.reach.iter().zip(part) {
-            let local = (centers[i as usize] - cell.origin).as_dvec3();
-            let (w, unit) = (f64::from(w), f64::from(cell.unit));
-            let sum = &mut sums[i as usize];
-            sum.0 += w;
-            sum.1 += DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * unit - w * local;
-            sum.2 += w * unit;
-        }
-    }
+    // Σ w, Σ w (x - v), as the movement is small against the position, and Σ w · unit.
+    let mut weights = vec![0.0f64; centers.len()];
+    let mut steps = vec![DVec3::ZERO; centers.len()];
+    let mut units = vec![0.0f64; centers.len()];
+    par::map_each(
+        cells.len(),
+        Scratch::default,
+        |i, scratch| {
+            scratch.load(samples, &cells[i], centers);
+            scratch.accumulate(power);
+            let total = |sums: &[Lanes; 4]| sums.map(Lanes::sum);
+            scratch.sums.iter().map(total).collect::<Vec<[f32; 4]>>()
+        },
+        |i, part| {
+            let cell = &cells[i];
+            for (&i, [w, x, y, z]) in cell.reach.iter().zip(part) {
+                let i = i as usize;
+                let local = (centers[i] - cell.origin).as_dvec3();
+                let (w, unit) = (f64::from(w), f64::from(cell.unit));
+                weights[i] += w;
+                steps[i] += DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * unit - w * local;
+                units[i] += w * unit;
+            }
+        },
+    );
     let mut moved = 0.0f64;
-    for (center, (w, dx, unit)) in centers.iter_mut().zip(sums) {
-        if w > 0.0 {
-            let step = dx / w;
-            moved = moved.max(step.length() * w / unit);
+    for (i, center) in centers.iter_mut().enumerate() {
+        if weights[i] > 0.0 {
+            let step = steps[i] / weights[i];
+            moved = moved.max(step.length() * weights[i] / units[i]);
             *center = (center.as_dvec3() + RELAXATION * step).as_vec3();
         }
     }
@@ -337,21 +352,21 @@ impl Scratch {
     fn load(&mut self, samples: Samples, cell: &Cell, centers: &[Vec3]) {
         let padded = cell.range.len().next_multiple_of(LANES);
         let local = |p: Vec3| (p - cell.origin) / cell.unit;
-        let last = local(samples.points[cell.range.end - 1]);
-        for (axis, x) in self.x.iter_mut().enumerate() {
-            x.clear();
-            x.extend(
-                samples.points[cell.range.clone()]
-                    .iter()
-                    .map(|&p| local(p)[axis]),
-            );
-            x.resize(padded, last[axis]);
+        let last = local(samples.point(cell.range.end - 1));
+        self.x.iter_mut().for_each(Vec::clear);
+        for k in cell.range.clone() {
+            for (x, at) in self.x.iter_mut().zip(local(samples.point(k)).to_array()) {
+                x.push(at);
+            }
+        }
+        for (x, last) in self.x.iter_mut().zip(last.to_array()) {
+            x.resize(padded, last);
         }
         self.spacing.clear();
         self.weight.clear();
         for k in cell.range.clone() {
             // w = ρ²/f with ρ = 1/h² and 1/f the area of surface that the point stands for.
-            let h = samples.density.spacing[k] / cell.unit;
+            let h = samples.spacing[k] / cell.unit;
             let area = (samples.features.spacing[k] / cell.unit).powi(2);
             self.spacing.push(h);
             self.weight.push(area / (h * h * h * h));

@@ -275,7 +275,7 @@ struct Around {
 fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
     let tree = Octree::build(centers);
     let cells = tree.cut(|node| node.range().len() <= CELL);
-    let found = par::map(cells.len(), Around::default, |c, around| {
+    let of = |c: usize, around: &mut Around| {
         let cell = cells[c].clone();
         let corners = bounds(&tree.points[cell.clone()]);
         let reach = MARGIN * even_reach(corners, cell.len(), RING);
@@ -301,11 +301,13 @@ fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
             }));
         }
         rings
-    });
+    };
     let mut rings = vec![Vec::new(); centers.len()];
-    for (&group, ring) in tree.order.iter().zip(found.into_iter().flatten()) {
-        rings[group as usize] = ring;
-    }
+    par::map_each(cells.len(), Around::default, of, |c, found| {
+        for (&group, ring) in tree.order[cells[c].clone()].iter().zip(found) {
+            rings[group as usize] = ring;
+        }
+    });
     rings
 }
 

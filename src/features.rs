@@ -43,10 +43,10 @@ impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
-        let copies: Vec<Range<usize>> = copies(&tree.points);
-        if copies.len() == tree.points.len() {
+        if !copied(&tree.points) {
             return Features::measure_distinct(tree, progress);
         }
+        let copies: Vec<Range<usize>> = copies(&tree.points);
         let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
         let one = Features::measure_distinct(&Octree::build(&distinct), progress)?;
         let each = || {
@@ -120,16 +120,20 @@ impl Features {
         )
     }
 
-    /// The points moved onto the surface.
-    pub fn denoised(&self, tree: &Octree) -> Vec<Vec3> {
-        let moved = |i: usize| tree.points[i] - self.residual[i] * self.normals[i];
-        (0..tree.points.len()).map(moved).collect()
+    /// Point `i` of the tree, moved onto the surface.
+    pub fn denoised(&self, tree: &Octree, i: usize) -> Vec3 {
+        tree.points[i] - self.residual[i] * self.normals[i]
     }
 
     /// Median of the spacing.
     pub fn median_spacing(&self) -> f32 {
         quantile(self.spacing.clone(), 2)
     }
+}
+
+/// Whether [`copies`] finds any.
+fn copied(points: &[Vec3]) -> bool {
+    points.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// Runs of equal points. In Morton order copies follow each other, unless another point shares their cell of 2⁻²¹.

@@ -66,18 +66,20 @@ impl Patches {
             reduced,
             normals: &normals,
         };
-        let fitted = par::map(
+        let mut patches = vec![Patch::NONE; normals.len()];
+        par::map_each(
             reduced.points.len().div_ceil(CELL),
             Scratch::default,
             |i, scratch| {
                 let end = ((i + 1) * CELL).min(reduced.points.len());
                 fitting.cell(i * CELL..end, scratch)
             },
+            |i, fitted| {
+                for (&i, patch) in reduced.order[i * CELL..].iter().zip(fitted) {
+                    patches[i as usize] = patch;
+                }
+            },
         );
-        let mut patches = vec![Patch::NONE; normals.len()];
-        for (&i, patch) in reduced.order.iter().zip(fitted.into_iter().flatten()) {
-            patches[i as usize] = patch;
-        }
         Patches(patches)
     }
 
@@ -94,26 +96,26 @@ impl Patches {
     }
 }
 
-/// Distances of `points`, which have these shares in the reduced points, to the surface.
+/// Distances of points, which have these shares in the reduced points, to the surface.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
 pub fn cloud_distances(
-    points: &[Vec3],
+    points: impl Fn(usize) -> Vec3 + Sync + Send,
     shares: &[Shares],
     patches: &Patches,
     progress: &mut dyn Progress,
 ) -> Result<Vec<f32>> {
     par::flat_map_progress(
-        points.len().div_ceil(SLICE),
-        points.len(),
+        shares.len().div_ceil(SLICE),
+        shares.len(),
         40.0,
         (Stage::Report, progress),
         || (),
         |i, ()| {
-            let end = ((i + 1) * SLICE).min(points.len());
+            let end = ((i + 1) * SLICE).min(shares.len());
             (i * SLICE..end)
-                .map(|k| patches.distance(points[k], shares[k].near()))
+                .map(|k| patches.distance(points(k), shares[k].near()))
                 .collect()
         },
     )

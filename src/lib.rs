@@ -92,5 +92,5 @@ pub mod wasm;
 pub use cloud::Cloud;
 pub use error::{Error, Result};
 pub use params::{ReduceParams, SurfaceParams};
-pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect, reconstruct, reduce};
+pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect, reconstruct, reduce, reduce_owned};
 pub use progress::{Progress, Stage};

@@ -108,6 +108,11 @@ impl Octree {
         tree
     }
 
+    /// The points in Morton order, without the tree.
+    pub fn into_points(self) -> Vec<Vec3> {
+        self.points
+    }
+
     fn node(&self, range: Range<usize>, level: u32) -> Node {
         let (mut lo, mut hi) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
         for &p in &self.points[range.clone()] {

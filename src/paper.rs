@@ -40,14 +40,14 @@ const FLAT_RATIO: f64 = 1.0 / 3.0;
 /// c tried around the proportional one when the validity index chooses, as factors.
 const VALIDITY_RANGE: [f64; 5] = [0.75, 0.875, 1.0, 1.125, 1.25];
 
-/// Clusters the cloud to `count` centres, or by the flatness target.
+/// Clusters the cloud to `count` centres, or by the flatness target; with a tree of the centres.
 pub fn cluster(
     tree: &Octree,
     features: &Features,
     count: Option<usize>,
     params: &ReduceParams,
     progress: &mut dyn Progress,
-) -> Result<Clustering> {
+) -> Result<(Clustering, Octree)> {
     let lambda = match params.target {
         Target::Flatness(lambda) => lambda,
         _ => LAMBDA,
@@ -119,15 +119,15 @@ pub fn cluster(
         },
     );
     let shrink = (tree.points.len() as f32 / centers.len() as f32).sqrt();
-    Ok(Clustering {
+    let clustering = Clustering {
         centers,
         shares,
-        index,
         spacing: features.spacing.iter().map(|s| s * shrink).collect(),
         cells: cells.len(),
         iterations,
         kept,
-    })
+    };
+    Ok((clustering, index))
 }
 
 /// Rms distance to the best plane, without the noise.

@@ -55,8 +55,23 @@ pub fn map_progress<S, T: Send>(
     Ok(out)
 }
 
-/// Lists that [`flat_map`] makes before it appends them.
-const LISTS: usize = 1024;
+/// Results that [`map_each`] makes before it hands them on.
+const BATCH: usize = 1024;
+
+/// [`map`] of which `take` gets every index and result, in that order; they never exist all at once.
+pub fn map_each<S, T: Send>(
+    n: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(usize, &mut S) -> T + Sync + Send,
+    mut take: impl FnMut(usize, T),
+) {
+    for start in (0..n).step_by(BATCH) {
+        let batch = map(BATCH.min(n - start), &scratch, |i, s| f(start + i, s));
+        for (i, result) in batch.into_iter().enumerate() {
+            take(start + i, result);
+        }
+    }
+}
 
 /// [`map`] of lists that become one, which has `total` values; no second copy of them all exists at any time.
 pub fn flat_map<S, T: Send>(
@@ -66,11 +81,7 @@ pub fn flat_map<S, T: Send>(
     f: impl Fn(usize, &mut S) -> Vec<T> + Sync + Send,
 ) -> Vec<T> {
     let mut out = Vec::with_capacity(total);
-    for start in (0..n).step_by(LISTS) {
-        for list in map(LISTS.min(n - start), &scratch, |i, s| f(start + i, s)) {
-            out.extend(list);
-        }
-    }
+    map_each(n, scratch, f, |_, list| out.extend(list));
     out
 }
 

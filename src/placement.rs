@@ -32,40 +32,56 @@ const CREASE: Range<f64> = 0.02..0.08;
 /// four models that the bench does not use (2 % less than 0.5, no farther from the truth).
 const OUTWARD: f64 = 0.7;
 
+/// Centres whose members are in one list: short lists find room where large arrays were freed, one list of all would not.
+const BLOCK: usize = 1024;
+
 /// The members of every cluster.
 #[derive(Debug, Clone)]
 pub struct Members<'a> {
     shares: &'a [Shares],
-    /// Where the members of each centre start in `of`.
-    first: Vec<u32>,
-    of: Vec<u32>,
+    /// How many members the centres before each one have together.
+    before: Vec<u32>,
+    /// The members of [`BLOCK`] centres each.
+    blocks: Vec<Vec<u32>>,
 }
 
 impl<'a> Members<'a> {
     /// Turns memberships by point into memberships by centre.
     pub fn new(shares: &'a [Shares], centers: usize) -> Members<'a> {
-        let mut first = vec![0u32; centers + 1];
+        let mut before = vec![0u32; centers + 1];
         for (i, _) in shares.iter().flat_map(Shares::used) {
-            first[i as usize + 1] += 1;
+            before[i as usize + 1] += 1;
         }
         for i in 0..centers {
-            first[i + 1] += first[i];
+            before[i + 1] += before[i];
         }
-        let mut next = first.clone();
-        let mut of = vec![0; first[centers] as usize];
+        let starts = (0..centers).step_by(BLOCK);
+        let mut blocks: Vec<Vec<u32>> = starts
+            .map(|i| before[(i + BLOCK).min(centers)] - before[i])
+            .map(|members| vec![0; members as usize])
+            .collect();
+        let mut next: Vec<u32> = (0..centers)
+            .map(|i| before[i] - before[i - i % BLOCK])
+            .collect();
         for (k, s) in shares.iter().enumerate() {
             for (i, _) in s.used() {
-                of[next[i as usize] as usize] = k as u32;
-                next[i as usize] += 1;
+                let next = &mut next[i as usize];
+                blocks[i as usize / BLOCK][*next as usize] = k as u32;
+                *next += 1;
             }
         }
-        Members { shares, first, of }
+        Members {
+            shares,
+            before,
+            blocks,
+        }
     }
 
     /// The members of centre `i`, in the octree's order, and their memberships.
     pub fn of(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
-        let members = self.first[i] as usize..self.first[i + 1] as usize;
-        self.of[members].iter().map(move |&k| {
+        let place = |before: u32| (before - self.before[i - i % BLOCK]) as usize;
+        let members = place(self.before[i])..place(self.before[i + 1]);
+        self.blocks[i / BLOCK][members].iter().map(move |&k| {
             let mut used = self.shares[k as usize].used();
             (
                 k,
@@ -95,11 +111,23 @@ pub struct Placed {
     pub variation: f32,
 }
 
-/// Places every centre.
+/// The area of surface that each centre stands for: that of the points, as they are shared.
+pub fn areas(features: &Features, shares: &[Shares], centers: usize) -> Vec<f64> {
+    let mut areas = vec![0.0; centers];
+    for (s, &spacing) in shares.iter().zip(&features.spacing) {
+        let area = f64::from(spacing).powi(2);
+        for (i, u) in s.used() {
+            areas[i as usize] += f64::from(u) * area;
+        }
+    }
+    areas
+}
+
+/// Places every centre. `areas` are those that they stand for.
 pub fn place(
-    points: &[Vec3],
+    tree: &Octree,
     features: &Features,
-    centers: &[Vec3],
+    (centers, areas): (&[Vec3], &[f64]),
     members: &Members,
     (placement, fuzzifier): (Placement, Fuzzifier),
 ) -> Vec<Placed> {
@@ -109,9 +137,9 @@ pub fn place(
         |i, ()| {
             let mut sums = Sums::default();
             for (k, u) in members.of(i) {
-                sums.add(points, features, k as usize, u, fuzzifier);
+                sums.add(tree, features, k as usize, u, fuzzifier);
             }
-            sums.place(centers[i], placement)
+            sums.place(centers[i], areas[i].sqrt(), placement)
         },
     )
 }
@@ -125,23 +153,15 @@ struct Sums {
     /// Σ n nᵀ, and Σ n nᵀ x.
     normals: [f64; 6],
     planes: DVec3,
-    area: f64,
     membership: f64,
     variation: f64,
 }
 
 impl Sums {
-    fn add(
-        &mut self,
-        points: &[Vec3],
-        features: &Features,
-        k: usize,
-        u: f32,
-        fuzzifier: Fuzzifier,
-    ) {
+    fn add(&mut self, tree: &Octree, features: &Features, k: usize, u: f32, fuzzifier: Fuzzifier) {
         let u = f64::from(u);
         let n = features.normals[k].as_dvec3();
-        let x = points[k].as_dvec3();
+        let x = features.denoised(tree, k).as_dvec3();
         if self.membership == 0.0 {
             self.origin = x;
         }
@@ -155,17 +175,16 @@ impl Sums {
             *sum += w * product;
         }
         self.planes += w * n.dot(x) * n;
-        self.area += u * area;
         self.membership += u;
         self.variation += u * f64::from(features.variation[k]);
     }
 
-    fn place(&self, center: Vec3, placement: Placement) -> Placed {
+    fn place(&self, center: Vec3, spacing: f64, placement: Placement) -> Placed {
         if self.weight == 0.0 {
             return Placed {
                 position: center,
                 normal: Vec3::ZERO,
-                spacing: 0.0,
+                spacing: spacing as f32,
                 variation: 0.0,
             };
         }
@@ -177,7 +196,6 @@ impl Sums {
         } else {
             DVec3::ZERO
         };
-        let spacing = self.area.sqrt();
         let position = match placement {
             Placement::Center => center.as_dvec3(),
             Placement::Mesh | Placement::Implicit | Placement::Sample => {
@@ -343,4 +361,43 @@ fn majority<T: Copy + PartialEq>(
         }
     }
     most.map(|(value, _)| value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clusters::SHARES;
+    use crate::rng::Rng;
+
+    #[test]
+    fn members_are_the_points_with_a_share() {
+        let centers = 2 * BLOCK + 7;
+        let mut rng = Rng::new(4);
+        let mut shares = |_| {
+            let first = (rng.uniform() * centers as f64) as usize;
+            Shares {
+                center: std::array::from_fn(|j| ((first + 700 * j) % centers) as u32),
+                u: std::array::from_fn(|j| {
+                    if j < SHARES - 1 {
+                        0.5 - 0.1 * j as f32
+                    } else {
+                        0.0
+                    }
+                }),
+            }
+        };
+        let shares: Vec<Shares> = (0..10_000).map(&mut shares).collect();
+        let members = Members::new(&shares, centers);
+        let mut of = vec![Vec::new(); centers];
+        for (k, s) in shares.iter().enumerate() {
+            for (i, u) in s.used() {
+                of[i as usize].push((k as u32, u));
+            }
+        }
+        for (i, of) in of.iter().enumerate() {
+            assert!(members.of(i).eq(of.iter().copied()), "centre {i}");
+            let own = |k: &u32| shares[*k as usize].center[0] as usize == i;
+            assert!(members.own(i).eq(of.iter().map(|&(k, _)| k).filter(own)));
+        }
+    }
 }

@@ -70,8 +70,6 @@ pub struct Clustering {
     pub centers: Vec<Vec3>,
     /// Memberships of every point in its nearest centres.
     pub shares: Vec<Shares>,
-    /// A tree of the centres.
-    pub index: Octree,
     /// Wanted spacing at every point.
     pub spacing: Vec<f32>,
     /// Sub-domains.
@@ -82,24 +80,23 @@ pub struct Clustering {
     pub kept: usize,
 }
 
-/// Reduces a cloud of at least one point.
+/// Reduces a cloud of at least one point, whose positions are taken from its `tree`. Features are freed as soon as nothing
+/// asks for them any more.
 ///
 /// # Errors
 /// [`crate::Error::BadOption`], [`crate::Error::Cancelled`].
 pub fn reduce(
     cloud: &Cloud,
     tree: &Octree,
-    features: &Features,
+    features: Features,
     params: &ReduceParams,
     progress: &mut dyn Progress,
 ) -> Result<Reduced> {
     params.validate()?;
     let power = Fuzzifier::new(fuzzifier(params));
-    let denoised = features.denoised(tree);
-    let job = Job {
+    let mut job = Job {
         tree,
         features,
-        denoised: &denoised,
         params,
     };
     let (goal, reason) = job.goal(progress)?;
@@ -107,13 +104,17 @@ pub fn reduce(
         Target::Tolerance(_) => tolerance::DONE,
         _ => 0.0,
     };
+    // Only the goal asks for it.
+    job.features.curvature = Vec::new();
     let plan = job.plan(&goal);
-    let clustering = job.cluster(goal, &mut Part::new(progress, searched..1.0))?;
+    let (clustering, index) = job.cluster(goal, &mut Part::new(progress, searched..1.0))?;
     progress.update(Stage::Place, 0.0)?;
+    let arrangement = job.arrangement(&clustering, index);
     let members = Members::new(&clustering.shares, clustering.centers.len());
-    let (mut placed, around) = job.place(&clustering, &members, plan);
-    let stats = stats(tree, &clustering, &around, power);
-    drop((around, denoised, clustering.index, clustering.spacing));
+    let mut placed = job.place(&clustering, &arrangement, &members, plan);
+    drop(job);
+    let stats = stats(tree, &clustering, &arrangement.around, power);
+    drop((arrangement, clustering.spacing));
     progress.update(Stage::Place, 0.5)?;
     let nearest = if plan.placement == Placement::Sample {
         placement::snap(tree, &members, &mut placed)
@@ -130,7 +131,7 @@ pub fn reduce(
         weights[s.center[0] as usize] += 1.0;
     }
     let assignment = params.assignment.then(|| {
-        let mut assignment = vec![0; cloud.len()];
+        let mut assignment = vec![0; tree.points.len()];
         for (s, &i) in clustering.shares.iter().zip(&tree.order) {
             assignment[i as usize] = s.center[0];
         }
@@ -179,9 +180,15 @@ struct Plan {
 /// What a reduction works on.
 struct Job<'a> {
     tree: &'a Octree,
-    features: &'a Features,
-    denoised: &'a [Vec3],
+    features: Features,
     params: &'a ReduceParams,
+}
+
+/// How centres lie to each other before they are placed.
+struct Arrangement {
+    /// The area of surface that each stands for.
+    areas: Vec<f64>,
+    around: Vec<Around>,
 }
 
 impl Job<'_> {
@@ -193,7 +200,7 @@ impl Job<'_> {
             Target::Count(count) => count.min(n),
             Target::Flatness(_) => return Ok((Goal::Flatness, String::new())),
             Target::Tolerance(tolerance) => {
-                let (tolerance, reason) = tolerance::allowed(self.features, tolerance);
+                let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
                 return Ok((self.within(tolerance, progress)?, reason));
             }
         };
@@ -201,7 +208,7 @@ impl Job<'_> {
             Method::Paper => Goal::Count(count),
             Method::Adaptive => {
                 let alpha = self.params.curvature_weight;
-                let density = Density::new(self.tree, self.features, count, alpha);
+                let density = Density::new(self.tree, &self.features, count, alpha);
                 Goal::Density(count, density)
             }
         };
@@ -210,7 +217,7 @@ impl Job<'_> {
 
     /// Looks for the fewest points that keep the surface within a tolerance.
     fn within(&self, tolerance: f64, progress: &mut dyn Progress) -> Result<Goal> {
-        let curvature = CurvatureSpacing::new(self.tree, self.features);
+        let curvature = CurvatureSpacing::new(self.tree, &self.features);
         let goal = |chord: f64| {
             let density = curvature.within(chord);
             match self.params.method {
@@ -219,43 +226,41 @@ impl Job<'_> {
             }
         };
         let n = self.tree.points.len();
-        let chord = tolerance::search(self.features, tolerance, progress, |chord, progress| {
+        let chord = tolerance::search(&self.features, tolerance, progress, |chord, progress| {
             let goal = goal(chord);
             let plan = self.plan(&goal);
-            let clustering = self.cluster(goal, progress)?;
+            let (clustering, index) = self.cluster(goal, progress)?;
             if clustering.centers.len() == n {
                 return Ok(None);
             }
+            let arrangement = self.arrangement(&clustering, index);
             let members = Members::new(&clustering.shares, clustering.centers.len());
-            let (placed, _) = self.place(&clustering, &members, plan);
+            let placed = self.place(&clustering, &arrangement, &members, plan);
             let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
-            cloud_distances(self.denoised, &clustering.shares, &patches, progress).map(Some)
+            let denoised = |k| self.features.denoised(self.tree, k);
+            cloud_distances(denoised, &clustering.shares, &patches, progress).map(Some)
         })?;
         Ok(goal(chord))
     }
 
-    fn cluster(&self, goal: Goal, progress: &mut dyn Progress) -> Result<Clustering> {
+    /// The clusters, and a tree of their centres.
+    fn cluster(&self, goal: Goal, progress: &mut dyn Progress) -> Result<(Clustering, Octree)> {
         let Job {
             tree,
             features,
             params,
-            ..
-        } = *self;
+        } = self;
         match goal {
             Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {
                 Ok(keep_all(tree, features))
             }
             Goal::Flatness => paper::cluster(tree, features, None, params, progress),
             Goal::Count(count) => paper::cluster(tree, features, Some(count), params, progress),
-            Goal::Density(count, density) => adaptive(
-                tree,
-                (self.denoised, features),
-                (count, density),
-                params,
-                progress,
-            ),
+            Goal::Density(count, density) => {
+                adaptive(tree, features, (count, density), params, progress)
+            }
         }
     }
 
@@ -276,50 +281,56 @@ impl Job<'_> {
         }
     }
 
-    /// The placed centres, and how the centres lay to each other before.
+    /// `index` is a tree of the centres.
+    fn arrangement(&self, clustering: &Clustering, index: Octree) -> Arrangement {
+        let areas = placement::areas(&self.features, &clustering.shares, clustering.centers.len());
+        let around = surroundings::measure(&index, |i| areas[i].sqrt() as f32);
+        Arrangement { areas, around }
+    }
+
     fn place(
         &self,
         clustering: &Clustering,
+        arrangement: &Arrangement,
         members: &Members,
         plan: Plan,
-    ) -> (Vec<Placed>, Vec<Around>) {
+    ) -> Vec<Placed> {
         let power = Fuzzifier::new(fuzzifier(self.params));
         let mut placed = placement::place(
-            self.denoised,
-            self.features,
-            &clustering.centers,
+            self.tree,
+            &self.features,
+            (&clustering.centers, &arrangement.areas),
             members,
             (plan.placement, power),
         );
-        let around = surroundings::measure(&clustering.index, |i| placed[i].spacing);
         if plan.to_borders {
             borders::restore(
                 self.tree,
-                (self.denoised, self.features),
+                &self.features,
                 members,
-                &around,
+                &arrangement.around,
                 &mut placed,
             );
         }
-        (placed, around)
+        placed
     }
 }
 
-fn keep_all(tree: &Octree, features: &Features) -> Clustering {
+fn keep_all(tree: &Octree, features: &Features) -> (Clustering, Octree) {
     let alone = |i: u32| Shares {
         center: [i; SHARES],
         u: std::array::from_fn(|j| if j == 0 { 1.0 } else { 0.0 }),
     };
     let n = tree.points.len();
-    Clustering {
+    let clustering = Clustering {
         centers: tree.points.clone(),
         shares: (0..n as u32).map(alone).collect(),
-        index: Octree::build(&tree.points),
         spacing: features.spacing.clone(),
         cells: 0,
         iterations: 0,
         kept: n,
-    }
+    };
+    (clustering, Octree::build(&tree.points))
 }
 
 /// Points of a cell so that it holds about 32 centres: enough to hide the cell's border, few enough that a point meets
@@ -332,18 +343,20 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 
 fn adaptive(
     tree: &Octree,
-    (points, features): (&[Vec3], &Features),
+    features: &Features,
     (count, density): (usize, Density),
     params: &ReduceParams,
     progress: &mut dyn Progress,
-) -> Result<Clustering> {
+) -> Result<(Clustering, Octree)> {
     let capacity = cell_points(count, tree.points.len(), params);
     let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
     let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let Density { spacing, share } = density;
+    drop(share);
     let samples = Samples {
-        points,
+        tree,
         features,
-        density: &density,
+        spacing: &spacing,
     };
     let settling = Settling {
         fuzzifier: fuzzifier(params),
@@ -351,15 +364,15 @@ fn adaptive(
         max_iterations: params.max_iterations.unwrap_or(5),
     };
     let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
-    Ok(Clustering {
+    let clustering = Clustering {
         centers: clusters.centers,
         shares: clusters.shares,
-        index: clusters.index,
-        spacing: density.spacing,
+        spacing,
         cells: cells.len(),
         iterations: clusters.iterations,
         kept: 0,
-    })
+    };
+    Ok((clustering, clusters.index))
 }
 
 fn stats(

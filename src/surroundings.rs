@@ -30,7 +30,7 @@ struct Scratch {
 pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Send) -> Vec<Around> {
     let spacing = |i: usize| spacing(index.order[i] as usize);
     let cells = index.cut(|node| node.range().len() <= CELL);
-    let measured = par::map(cells.len(), Scratch::default, |c, scratch| {
+    let of = |c: usize, scratch: &mut Scratch| {
         let cell = cells[c].clone();
         let widest = RING * cell.clone().map(spacing).fold(0.0, f32::max);
         let corners = bounds(&index.points[cell.clone()]);
@@ -55,11 +55,13 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
             }
         }
         around
-    });
+    };
     let mut all = vec![Around::default(); index.points.len()];
-    for (&i, around) in index.order.iter().zip(measured.into_iter().flatten()) {
-        all[i as usize] = around;
-    }
+    par::map_each(cells.len(), Scratch::default, of, |c, measured| {
+        for (&i, around) in index.order[cells[c].clone()].iter().zip(measured) {
+            all[i as usize] = around;
+        }
+    });
     all
 }
 

@@ -69,11 +69,11 @@ pub fn defaults() -> JsResult {
     ])
 }
 
-/// [`pipeline::reduce`].
+/// [`pipeline::reduce_owned`].
 #[wasm_bindgen]
 pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
     let (input, precision) = cloud.to_cloud()?;
-    let mut result = pipeline::reduce(&input, &from_js(options)?, &mut JsProgress(progress))?;
+    let mut result = pipeline::reduce_owned(input, &from_js(options)?, &mut JsProgress(progress))?;
     sign(&mut result.report);
     reduced_to_js(&result, precision)
 }

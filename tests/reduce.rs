@@ -20,7 +20,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 fn run(cloud: &Cloud, params: &ReduceParams) -> Reduced {
     let tree = Octree::build(&cloud.points);
     let features = Features::measure(&tree, &mut Silent).unwrap();
-    let reduced = reduce(cloud, &tree, &features, params, &mut Silent).unwrap();
+    let reduced = reduce(cloud, &tree, features, params, &mut Silent).unwrap();
     assert_sound(cloud, &reduced);
     reduced
 }
@@ -597,6 +597,28 @@ fn nothing_of_a_clean_scan_is_dropped() {
 }
 
 #[test]
+fn a_cloud_is_given_away_or_kept() {
+    let mut positions = Shape::Torus.sample(5000, 0.0, 5);
+    positions.extend(strays(50));
+    let colors: Vec<u8> = (0..positions.len()).map(|i| (i % 251) as u8).collect();
+    let cloud = Cloud::from_f64(&positions)
+        .and_then(|cloud| cloud.with_colors(&colors))
+        .unwrap();
+    for outliers in [Outliers::Keep, Outliers::Drop] {
+        let params = ReduceParams {
+            outliers,
+            ..without_outliers()
+        };
+        let kept = pipeline::reduce(&cloud, &params, &mut Silent).unwrap();
+        let given = pipeline::reduce_owned(cloud.clone(), &params, &mut Silent).unwrap();
+        assert_eq!(given.reduced.cloud, kept.reduced.cloud);
+        assert_eq!(given.reduced.nearest, kept.reduced.nearest);
+        assert_eq!(given.reduced.assignment, kept.reduced.assignment);
+        assert_eq!(given.report.outliers, kept.report.outliers);
+    }
+}
+
+#[test]
 fn noise_is_not_isolated() {
     for n in [2000, 80_000] {
         for s in Shape::ALL {
@@ -1053,7 +1075,7 @@ fn a_listener_stops_it_at_any_stage() {
             let stopped = reduce(
                 &cloud,
                 &tree,
-                &features,
+                features.clone(),
                 &params,
                 &mut |s: Stage, _: f32| s != stage,
             );
@@ -1079,7 +1101,7 @@ fn a_listener_stops_it_at_any_stage() {
         fuzzifier: Some(1.0),
         ..Default::default()
     };
-    let refused = reduce(&cloud, &tree, &features, &bad, &mut Silent)
+    let refused = reduce(&cloud, &tree, features, &bad, &mut Silent)
         .err()
         .unwrap();
     assert_eq!(refused.code(), "bad-option");

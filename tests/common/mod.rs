@@ -150,5 +150,5 @@ pub fn distances_to(reduced: &[Vec3], normals: &[Vec3], points: &[Vec3]) -> Vec<
         }
     };
     let shares: Vec<Shares> = points.iter().map(&mut nearest).collect();
-    cloud_distances(points, &shares, &patches, &mut Silent).expect("nobody cancels")
+    cloud_distances(|k| points[k], &shares, &patches, &mut Silent).expect("nobody cancels")
 }

@@ -170,7 +170,7 @@ impl Scan {
         };
         let shares: Vec<Shares> = self.truth.iter().map(&mut shares).collect();
         let mut distances =
-            cloud_distances(&self.truth, &shares, &patches, &mut Silent).unwrap_or_default();
+            cloud_distances(|k| self.truth[k], &shares, &patches, &mut Silent).unwrap_or_default();
         distances.sort_unstable_by(f32::total_cmp);
         let mean = distances.iter().map(|&d| f64::from(d)).sum::<f64>() / distances.len() as f64;
         (

@@ -46,6 +46,14 @@ test('the build that was asked for, and why', async (t) => {
   }
 });
 
+test('a reduction takes no more than 160 bytes a point', async (t) => {
+  const engine = await engineFor(t, { threads: 1 });
+  const points = 300_000;
+  const { positions } = sphere(points);
+  const { report } = await engine.reduce({ positions });
+  assert.ok(report.peakMemoryBytes <= 160 * points, `${report.peakMemoryBytes / points} bytes a point`);
+});
+
 test('threads that do not start leave the single-threaded build', async (t) => {
   const engine = await engineFor(t, { threads: 2, wasmUrl: { threads: 'file:///nowhere.wasm' } });
   assert.deepEqual([engine.build, engine.threads], ['single', 1]);
