@@ -63,43 +63,10 @@ impl Sites {
             noise,
             oriented,
         };
-        if sites.noise > 0.0 {
-            let within = sites.noise_within_sheets();
-            if within < NOISE_OF_TWO * sites.noise {
-                sites.noise = within;
-            }
-        }
         if !oriented {
             sites.mend_normals();
         }
         Ok(sites)
-    }
-
-    /// The noise that neighbours' offsets along their normals tell of: most of a site's neighbours are on its own sheet, so
-    /// the smaller offsets are, and those are what the mean of two normals leaves, on every quadric 0 but for the noise.
-    fn noise_within_sheets(&self) -> f32 {
-        /// This share of the differences of two Gaussians is under [`WITHIN`] of their standard deviation: √2 · 0.385.
-        const SHARE: f32 = 0.3;
-        const WITHIN: f32 = 0.545;
-        let mut offsets: Vec<f32> = (0..self.normals.len())
-            .flat_map(|i| {
-                self.graph
-                    .of(i as u32)
-                    .iter()
-                    .map(move |&j| (i, j as usize))
-            })
-            .filter_map(|(i, j)| {
-                let (a, b) = (self.normals[i], self.normals[j]);
-                let mean = (if a.dot(b) < 0.0 { a - b } else { a + b }) / 2.0;
-                let offset = mean.dot(self.tree.points[j] - self.tree.points[i]);
-                (mean != Vec3::ZERO).then_some(offset.abs())
-            })
-            .collect();
-        if offsets.is_empty() {
-            return self.noise;
-        }
-        let k = (SHARE * offsets.len() as f32) as usize;
-        *offsets.select_nth_unstable_by(k, f32::total_cmp).1 / WITHIN
     }
 
     /// Gives a site whose normal agrees with no neighbour's the one of theirs that agrees with the most: where two sheets
@@ -143,8 +110,6 @@ const CORE: usize = 16;
 const OVERLAP: [f32; 2] = [18.0, 34.0];
 /// Neighbours in the graph.
 const GRAPH: usize = 10;
-/// Noise within sheets under this share of the measured noise says that it was the distance of two sheets that was measured.
-const NOISE_OF_TWO: f32 = 0.5;
 /// Cosine of 70°, the largest turn between compatible normals.
 const MIN_COSINE: f32 = 0.342;
 /// Largest offset along the normal against the distance; sin 45° and a margin, so that a right-angled crease connects.

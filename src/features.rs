@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::filter::{Filter, Sums};
 use crate::lanes::LANES;
 use crate::neighborhood::CELL;
-use crate::noise::{Scales, quantile};
+use crate::noise::{self, Scales, quantile};
 use crate::octree::Octree;
 use crate::par;
 use crate::planes::{Plane, Planes};
@@ -90,6 +90,7 @@ impl Features {
             noise: scales.noise,
         };
         drop(planes);
+        features.noise = noise::within_sheets(tree, &features.normals, &scales);
         let (early, late) = (0.4..0.7, 0.7..1.0);
         features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
             sums.normals(denoise)

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use nalgebra::{SMatrix, SVector};
 
 use crate::linalg::{SymEigen, sym_eigen};
@@ -22,6 +22,15 @@ const ROUNDS: [usize; 2] = [64, 512];
 /// Noise, in spacings, up to which points are left where they are, and from which they are moved all the way: on clean
 /// clouds the curvature inside the fit's support looks like noise of 0.02 spacings.
 const NOISE_FLOOR: Range<f32> = 0.04..0.1;
+
+/// One of so many points of a group tells the noise within its sheet.
+const SPARSE: usize = 4;
+/// This share of the differences of two Gaussians is under [`UNDER`] of their standard deviation: √2 · 0.385.
+const SMALLER: f32 = 0.3;
+/// See [`SMALLER`].
+const UNDER: f32 = 0.545;
+/// Noise within sheets under this share of what stands off the quadrics says that those run between two sheets.
+const OF_TWO: f32 = 0.5;
 
 /// Supports that follow the noise.
 #[derive(Debug, Clone, Copy)]
@@ -76,6 +85,46 @@ impl Scales {
             scales = Scales::new(residual / 0.3186 / kept, spacing);
         }
         scales
+    }
+}
+
+/// The noise that neighbours' offsets along their normals tell of, in place of `noise` if it is under [`OF_TWO`] of that:
+/// quadrics between two sheets take their distance for noise. Most of a point's neighbours are on its own sheet, so the
+/// smaller offsets are, and those are what the mean of two normals leaves, on every quadric 0 but for the noise.
+pub(crate) fn within_sheets(tree: &Octree, normals: &[Vec3], scales: &Scales) -> f32 {
+    let noise = scales.noise;
+    let groups = tree.cut(|node| node.range().len() <= GROUP);
+    let chosen: Vec<Range<usize>> = groups
+        .iter()
+        .step_by(groups.len().div_ceil(ROUNDS[1]))
+        .cloned()
+        .collect();
+    let offsets = par::map(chosen.len(), Vec::new, |g, found| {
+        let mut offsets = Vec::new();
+        for i in chosen[g].clone().step_by(SPARSE) {
+            tree.knn(tree.points[i], scales.plane, found);
+            for n in found.iter().filter(|n| n.index as usize != i) {
+                let (a, b) = (normals[i], normals[n.index as usize]);
+                let mean = (if a.dot(b) < 0.0 { a - b } else { a + b }) / 2.0;
+                if mean != Vec3::ZERO {
+                    let apart = tree.points[n.index as usize] - tree.points[i];
+                    offsets.push(mean.dot(apart).abs());
+                }
+            }
+        }
+        offsets
+    })
+    .concat();
+    if offsets.is_empty() {
+        return noise;
+    }
+    let k = (SMALLER * offsets.len() as f32) as usize;
+    let mut offsets = offsets;
+    let within = *offsets.select_nth_unstable_by(k, f32::total_cmp).1 / UNDER;
+    if within < OF_TWO * noise {
+        within
+    } else {
+        noise
     }
 }
 
