@@ -37,6 +37,8 @@ pub struct Field<'a> {
     areas: Vec<Vec3>,
     /// Value that stands for one whole turn of the winding number.
     depth: f64,
+    /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
+    solid: bool,
 }
 
 /// The sites of a node seen from far away.
@@ -53,6 +55,23 @@ const REACH: f32 = 2.2;
 /// A node farther away than this times its radius is a dipole. 2 gives the winding number to about 0.01 (Barill et al.,
 /// section 4.4).
 const FAR: f64 = 2.0;
+
+/// Σ W_i below which functions are asked beyond their sites, more than about 1.3 spacings away from all: what they say of
+/// inside and outside must not contradict the winding number. At 0.5 to 1.5 lobes that grow out of sparse and noisy parts
+/// are gone (rms errors of four models that the bench does not use: 18 % less); farther in creases suffer.
+const FAINT: f32 = 1.0;
+/// Winding number that tells inside from outside against a function. Smooth parts are 6 % worse at 0.5.
+const SURE: f64 = 0.6;
+/// Sites that are asked whether the whole is solid, how many spacings inside of them, what the winding number is there, and
+/// the share of them that must say so: closed scans have 98 % and more, a half ball 74 %,
+/// three quarters of one 91 %.
+const ASKED: usize = 512;
+/// See [`ASKED`].
+const DEEP: f32 = 2.0;
+/// See [`ASKED`].
+const INSIDE: f64 = 0.75;
+/// See [`ASKED`].
+const MOST_INSIDE: f64 = 0.95;
 
 /// Memory of one evaluating worker.
 #[derive(Debug, Default, Clone)]
@@ -126,7 +145,7 @@ impl<'a> Field<'a> {
         let mut spacings = sites.spacing.clone();
         spacings.sort_unstable_by(f32::total_cmp);
         let depth = 4.0 * spacings[spacings.len() / 2] as f64;
-        Field {
+        let mut field = Field {
             functions: &fits.functions,
             signs: &signs.signs,
             tree,
@@ -136,7 +155,21 @@ impl<'a> Field<'a> {
             dipoles,
             areas,
             depth,
-        }
+            solid: false,
+        };
+        field.solid = field.is_solid(signs, sites);
+        field
+    }
+
+    /// Whether the sites enclose something: whether the winding number is near 1 just inside of nearly all of some of them.
+    fn is_solid(&self, signs: &Signs, sites: &Sites) -> bool {
+        let n = self.tree.points.len();
+        let asked = (0..n).step_by(n.div_ceil(ASKED).max(1));
+        let inside = asked.clone().filter(|&i| {
+            let x = self.tree.points[i] - signs.normals[i] * (DEEP * sites.spacing[i]);
+            self.winding(x.as_dvec3()) > INSIDE
+        });
+        inside.count() as f64 > MOST_INSIDE * asked.count() as f64
     }
 
     /// W_i and its gradient of every sub-domain that reaches one of a block's positions, by sub-domain.
@@ -200,9 +233,29 @@ impl<'a> Field<'a> {
         let inverse = total[3].less(least, Lanes::splat(f32::NAN), one / total[3]);
         let value = sum[3] * inverse;
         Blended {
-            value,
+            value: self.believed(block, value, total[3]),
             gradient: [0, 1, 2].map(|axis| (sum[axis] - total[axis] * value) * inverse),
         }
+    }
+
+    /// The values of a block's positions without those that the winding number contradicts.
+    fn believed(&self, block: &Block, value: Lanes, weight: Lanes) -> Lanes {
+        if !self.solid {
+            return value;
+        }
+        let (weight, mut value) = (weight.to_array(), value.to_array());
+        for l in (0..block.range.len()).filter(|&l| weight[l] < FAINT) {
+            let x = Vec3::from_array(block.at.map(|x| x.lane(l))).as_dvec3();
+            let doubted = if value[l] < 0.0 {
+                self.winding(x) < 1.0 - SURE
+            } else {
+                value[l] > 0.0 && self.winding(x) > SURE
+            };
+            if doubted {
+                value[l] = f32::NAN;
+            }
+        }
+        Lanes::from_fn(|l| value[l])
     }
 
     /// [`Field::blend`] of all positions: `of` gets the places of up to eight that lie close together.
