@@ -62,6 +62,7 @@ mod tolerance;
 pub mod reduce;
 pub mod cells;
 pub mod local;
+mod faces;
 pub mod fit;
 mod caves;
 pub mod orient;

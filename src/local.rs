@@ -7,9 +7,19 @@ use crate::neighborhood::Block;
 use crate::params::Kernel;
 use glam::Vec3;
 
-/// f(x) = Σ w_i φ(|x − c_i|) + λ0 + λ1 x + λ2 y + λ3 z.
+/// The function of a sub-domain: one smooth function, or where there is a crease the largest or least of one for each face
+/// ([`crate::faces`]).
 #[derive(Debug, Clone)]
 pub struct LocalFit {
+    /// At least one.
+    pub(crate) faces: Vec<Rbf>,
+    /// Whether the least counts.
+    pub(crate) concave: bool,
+}
+
+/// f(x) = Σ w_i φ(|x − c_i|) + λ0 + λ1 x + λ2 y + λ3 z.
+#[derive(Debug, Clone)]
+pub(crate) struct Rbf {
     /// φ.
     pub(crate) kernel: Kernel,
     /// Origin of the coordinates.
@@ -22,9 +32,8 @@ pub struct LocalFit {
     pub(crate) linear: [f32; 4],
 }
 
-impl LocalFit {
-    /// f in lengths of the unit frame at eight positions, and its gradient (about unit length near the surface).
-    pub fn evaluate(&self, at: [Lanes; 3]) -> (Lanes, [Lanes; 3]) {
+impl Rbf {
+    fn evaluate(&self, at: [Lanes; 3]) -> (Lanes, [Lanes; 3]) {
         let unit = Lanes::splat(1.0 / self.radius);
         let center = self.center.to_array();
         let q = [0, 1, 2].map(|axis| (at[axis] - Lanes::splat(center[axis])) * unit);
@@ -67,6 +76,24 @@ impl LocalFit {
             }
         }
         let [value, gradient @ ..] = sums;
+        (value, gradient)
+    }
+}
+
+impl LocalFit {
+    /// f in lengths of the unit frame at eight positions, and its gradient (about unit length near the surface).
+    pub fn evaluate(&self, at: [Lanes; 3]) -> (Lanes, [Lanes; 3]) {
+        let (mut value, mut gradient) = self.faces[0].evaluate(at);
+        for face in &self.faces[1..] {
+            let (other, slope) = face.evaluate(at);
+            let (low, high) = if self.concave {
+                (other, value)
+            } else {
+                (value, other)
+            };
+            gradient = [0, 1, 2].map(|axis| low.less(high, slope[axis], gradient[axis]));
+            value = low.less(high, other, value);
+        }
         (value, gradient)
     }
 

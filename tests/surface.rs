@@ -4,6 +4,7 @@ mod common;
 
 use common::{Shape, points};
 use glam::{DMat3, DVec3};
+use pointweave::distance::mesh_distance;
 use pointweave::params::{Boundary, Kernel, Propagation, Target};
 use pointweave::progress::Silent;
 use pointweave::report::{area, topology, volume};
@@ -234,6 +235,76 @@ fn wrong_normals(s: &Surface, outward: impl Fn(DVec3) -> DVec3) -> usize {
         .zip(normals)
         .filter(|(p, n)| outward(*p).dot(n.as_dvec3()) < 0.0)
         .count()
+}
+
+/// Points of an angle profile: an L of thickness 1 whose legs are 2 long, 2 wide.
+fn angle_profile(n: usize) -> Vec<f64> {
+    let outline =
+        [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)].map(|(x, z)| (f64::from(x), f64::from(z)));
+    let mut rng = pointweave::rng::Rng::new(31);
+    let (walls, ends) = (8.0 * 2.0, 2.0 * 3.0);
+    let mut positions = Vec::new();
+    while positions.len() < 3 * n {
+        if rng.uniform() * (walls + ends) < walls {
+            let mut along = 8.0 * rng.uniform();
+            let mut k = 0;
+            let (a, b) = loop {
+                let (a, b) = (outline[k], outline[(k + 1) % 6]);
+                let length = (b.0 - a.0).abs() + (b.1 - a.1).abs();
+                if along < length {
+                    let t = along / length;
+                    break (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1));
+                }
+                along -= length;
+                k += 1;
+            };
+            positions.extend([a, 2.0 * rng.uniform(), b]);
+        } else {
+            let (x, z) = (2.0 * rng.uniform(), 2.0 * rng.uniform());
+            if x < 1.0 || z < 1.0 {
+                positions.extend([x, if rng.uniform() < 0.5 { 0.0 } else { 2.0 }, z]);
+            }
+        }
+    }
+    positions
+}
+
+#[test]
+fn creases_and_corners_are_in_the_mesh() {
+    let positions = angle_profile(9000);
+    let spacing = (22.0 / 9000.0f64).sqrt();
+    // Rms distance of the mesh to the edge inside of the angle, to the outer edges, and to all corners.
+    let errors = |sharp: bool| {
+        let params = SurfaceParams {
+            sharp,
+            ..unreduced()
+        };
+        let s = surface(&positions, &params).unwrap();
+        let frame = &s.cloud.reduced.cloud.frame;
+        let outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)];
+        let edge = |x: i32, z: i32| {
+            (1..40).map(move |k| DVec3::new(x.into(), f64::from(k) / 20.0, z.into()))
+        };
+        let inner: Vec<DVec3> = edge(1, 1).collect();
+        let outer = outline.iter().filter(|&&c| c != (1, 1));
+        let outer: Vec<DVec3> = outer.flat_map(|&(x, z)| edge(x, z)).collect();
+        let corner = |&(x, z): &(i32, i32)| [0.0, 2.0].map(|y| DVec3::new(x.into(), y, z.into()));
+        let corners: Vec<DVec3> = outline.iter().flat_map(corner).collect();
+        [inner, outer, corners].map(|truth| {
+            let at: Vec<_> = truth.iter().map(|p| frame.to_unit(p.to_array())).collect();
+            let (v, t) = (&s.mesh.vertices, &s.mesh.triangles);
+            let found = mesh_distance(&at, v, t, &mut Silent).unwrap();
+            found.rms * frame.diagonal / spacing
+        })
+    };
+    let (kept, rounded) = (errors(true), errors(false));
+    for (k, most) in [0.2, 0.2, 0.4].into_iter().enumerate() {
+        let (kept, rounded) = (kept[k], rounded[k]);
+        assert!(
+            kept < most && kept < 0.75 * rounded,
+            "{k}: {kept} of {rounded} spacings"
+        );
+    }
 }
 
 #[test]
