@@ -63,6 +63,7 @@ pub mod reduce;
 pub mod cells;
 pub mod local;
 pub mod fit;
+mod winding;
 mod caves;
 pub mod orient;
 pub mod field;
