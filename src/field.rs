@@ -5,19 +5,19 @@
 //! Wendland's C² function and R_p the reach of the site. Weights that hang on sites rather than on boxes fall with the
 //! distance to the sheet, so that a thin wall's two sides hardly mix.
 //!
-//! Beyond all reaches F has no value. There the generalised winding number of the oriented sites (Jacobson, Kavan,
-//! Sorkine-Hornung, 2013; evaluated by a tree of dipoles: Barill et al., "Fast winding numbers for soups and clouds",
-//! 2018) tells inside from outside and closes holes.
+//! Beyond all reaches F has no value. There the winding number of the oriented sites ([`crate::winding`]) tells inside
+//! from outside and closes holes.
 
 use crate::cells::Sites;
 use crate::extract::Implicit;
 use crate::fit::Fits;
-use crate::kernel::{solid_angle, wendland};
+use crate::kernel::wendland;
 use crate::lanes::Lanes;
 use crate::local::LocalFit;
 use crate::neighborhood::Block;
 use crate::octree::{Octree, morton};
 use crate::orient::Signs;
+use crate::winding::Winding;
 use glam::{DVec3, Vec3};
 
 /// The joined function: negative inside, positive outside, about the distance near the surface.
@@ -32,30 +32,15 @@ pub struct Field<'a> {
     owner: Vec<u32>,
     /// Largest reach in each node of the tree.
     node_reach: Vec<f32>,
-    dipoles: Vec<Dipole>,
-    /// Σ area · normal of each site.
-    areas: Vec<Vec3>,
+    winding: Winding<'a>,
     /// Value that stands for one whole turn of the winding number.
     depth: f64,
     /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
     solid: bool,
 }
 
-/// The sites of a node seen from far away.
-#[derive(Debug, Clone, Copy)]
-struct Dipole {
-    center: DVec3,
-    /// Σ area · normal.
-    moment: DVec3,
-    radius: f64,
-}
-
 /// Reach in spacings: the ball holds about 16 sites of the sheet, so that no gap of the sampling is left out.
 const REACH: f32 = 2.2;
-/// A node farther away than this times its radius is a dipole. 2 gives the winding number to about 0.01 (Barill et al.,
-/// section 4.4).
-const FAR: f64 = 2.0;
-
 /// Σ W_i below which functions are asked beyond their sites, more than about 1.3 spacings away from all: what they say of
 /// inside and outside must not contradict the winding number. At 0.5 to 1.5 lobes that grow out of sparse and noisy parts
 /// are gone (rms errors of four models that the bench does not use: 18 % less); farther in creases suffer.
@@ -123,25 +108,6 @@ impl<'a> Field<'a> {
             .iter()
             .map(|n| reach[n.range()].iter().copied().fold(0.0, f32::max))
             .collect();
-        let areas: Vec<Vec3> = signs
-            .normals
-            .iter()
-            .zip(&sites.spacing)
-            .map(|(&n, &h)| n * (h * h))
-            .collect();
-        let dipoles = tree
-            .nodes
-            .iter()
-            .map(|node| {
-                let center = ((node.lo + node.hi) * 0.5).as_dvec3();
-                let moment = areas[node.range()].iter().map(|a| a.as_dvec3()).sum();
-                Dipole {
-                    center,
-                    moment,
-                    radius: ((node.hi - node.lo) * 0.5).as_dvec3().length(),
-                }
-            })
-            .collect();
         let mut spacings = sites.spacing.clone();
         spacings.sort_unstable_by(f32::total_cmp);
         let depth = 4.0 * spacings[spacings.len() / 2] as f64;
@@ -152,8 +118,7 @@ impl<'a> Field<'a> {
             reach,
             owner,
             node_reach,
-            dipoles,
-            areas,
+            winding: Winding::new(tree, &signs.normals, &sites.spacing),
             depth,
             solid: false,
         };
@@ -167,7 +132,7 @@ impl<'a> Field<'a> {
         let asked = (0..n).step_by(n.div_ceil(ASKED).max(1));
         let inside = asked.clone().filter(|&i| {
             let x = self.tree.points[i] - signs.normals[i] * (DEEP * sites.spacing[i]);
-            self.winding(x.as_dvec3()) > INSIDE
+            self.winding.around(x.as_dvec3(), 0.0) > INSIDE
         });
         inside.count() as f64 > MOST_INSIDE * asked.count() as f64
     }
@@ -247,9 +212,9 @@ impl<'a> Field<'a> {
         for l in (0..block.range.len()).filter(|&l| weight[l] < FAINT) {
             let x = Vec3::from_array(block.at.map(|x| x.lane(l))).as_dvec3();
             let doubted = if value[l] < 0.0 {
-                self.winding(x) < 1.0 - SURE
+                self.winding.around(x, 0.0) < 1.0 - SURE
             } else {
-                value[l] > 0.0 && self.winding(x) > SURE
+                value[l] > 0.0 && self.winding.around(x, 0.0) > SURE
             };
             if doubted {
                 value[l] = f32::NAN;
@@ -281,30 +246,9 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// The winding number of the oriented sites around `x`: about 1 inside, 0 outside, between in a hole.
-    pub fn winding(&self, x: DVec3) -> f64 {
-        let mut sum = 0.0;
-        let mut stack = vec![0];
-        while let Some(id) = stack.pop() {
-            let (node, dipole) = (&self.tree.nodes[id], &self.dipoles[id]);
-            let far = (dipole.center - x).length_squared() > (FAR * dipole.radius).powi(2);
-            if far {
-                sum += solid_angle(dipole.center - x, dipole.moment);
-            } else if node.is_leaf() {
-                for i in node.range() {
-                    sum +=
-                        solid_angle(self.tree.points[i].as_dvec3() - x, self.areas[i].as_dvec3());
-                }
-            } else {
-                stack.extend(node.child_ids());
-            }
-        }
-        sum / (4.0 * std::f64::consts::PI)
-    }
-
     /// A continuation of F to all of space from the winding number: its zero set closes the holes of F's.
     pub fn extension(&self, x: DVec3) -> f64 {
-        self.depth * (0.5 - self.winding(x))
+        self.depth * (0.5 - self.winding.around(x, 0.0))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::lanes::Lanes;
 use crate::params::Kernel;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// φ(r) and φ'(r)/r of the kernel, from r².
 ///
@@ -46,12 +46,24 @@ pub fn wendland(t: Lanes) -> (Lanes, Lanes) {
 
 /// Solid angle of a small patch of area vector `a` at `d`.
 pub fn solid_angle(d: DVec3, a: DVec3) -> f64 {
-    let r2 = d.length_squared();
+    blurred_solid_angle(d, a, 0.0)
+}
+
+/// [`solid_angle`] of a patch that is spread over about `blur`: much nearer than that it is hardly seen.
+pub(crate) fn blurred_solid_angle(d: DVec3, a: DVec3, blur: f64) -> f64 {
+    let r2 = d.length_squared() + blur * blur;
     if r2 > 0.0 {
         d.dot(a) / (r2 * r2.sqrt())
     } else {
         0.0
     }
+}
+
+/// How much two dipoles along `m` and, `d` away, along `n` want to stand as they do, −2 to 2: side by side they look the
+/// same way, facing each other opposite ways. `blur2`, a squared length, tempers offsets that may be noise.
+pub(crate) fn dipoles(d: Vec3, m: Vec3, n: Vec3, blur2: f32) -> f32 {
+    let square = d.length_squared() + blur2;
+    m.dot(n) - 3.0 * m.dot(d) * n.dot(d) / square.max(f32::MIN_POSITIVE)
 }
 
 #[cfg(test)]

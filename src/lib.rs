@@ -64,6 +64,7 @@ pub mod cells;
 pub mod local;
 mod faces;
 pub mod fit;
+mod winding;
 mod caves;
 pub mod orient;
 pub mod field;

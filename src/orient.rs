@@ -16,14 +16,19 @@
 //! volume follow the paper's rule for the start (the normal at the largest coordinate agrees with that axis). One that
 //! lies in the solid of an odd number of others is a cave's wall, and looks into the cave: nested shells bound the solid
 //! between them.
+//!
+//! Last, the winding number is asked itself: on a surface it is ½, on a part of it that is inside out −½. Where two parts
+//! touch in few points, that knows more than the edges there do.
 
 use crate::caves::{Solid, caves};
 use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
+use crate::kernel::dipoles;
 use crate::par;
 use crate::params::Propagation;
 use crate::progress::{Progress, Stage};
+use crate::winding::Winding;
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
 
@@ -105,6 +110,11 @@ pub fn orient(
             .map(|c| turn_outward(c, fits, sites, &gradients, &mut signs))
             .collect();
         turn_caves(&components, &is_solid, fits, sites, &gradients, &mut signs);
+        if propagation == Propagation::Global {
+            let around =
+                |signs: &[f32], which: &[u32]| winding(which, fits, sites, &gradients, signs);
+            turn_inverted(&edges, &adjacency, around, &mut signs);
+        }
     }
     let normals = site_normals(fits, sites, &gradients, &signs);
     let kept = kept(&components, fits);
@@ -169,12 +179,14 @@ fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
     }
     let unsigned = vec![1.0; fits.subdomains.len()];
     let normals = site_normals(fits, sites, gradients, &unsigned);
+    let blur2 = BLUR * sites.noise * sites.noise;
     for i in 0..n_sites as u32 {
         for &j in sites.graph.of(i) {
             let (a, b) = (owner[i as usize], owner[j as usize]);
             if a != b && a != u32::MAX && b != u32::MAX {
-                let dipoles = dipoles(sites, &normals, i, j);
-                said.push((a.min(b), a.max(b), DIPOLES * dipoles));
+                let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
+                let stand = dipoles(d, normals[i as usize], normals[j as usize], blur2);
+                said.push((a.min(b), a.max(b), DIPOLES * stand));
             }
         }
     }
@@ -188,14 +200,6 @@ fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
             (weight != 0.0).then_some(Edge { a, b, weight })
         })
         .collect()
-}
-
-/// How much the dipoles along two sites' normals want to stand as they do, −2 to 2.
-fn dipoles(sites: &Sites, normals: &[Vec3], i: u32, j: u32) -> f32 {
-    let (m, n) = (normals[i as usize], normals[j as usize]);
-    let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
-    let square = d.length_squared() + BLUR * sites.noise * sites.noise;
-    m.dot(n) - 3.0 * m.dot(d) * n.dot(d) / square.max(f32::MIN_POSITIVE)
 }
 
 /// Edges by sub-domain.
@@ -569,6 +573,78 @@ fn turn_caves(
     for cave in caves(&solids) {
         turn(cave, signs);
     }
+}
+
+/// Turns the connected groups of sub-domains whose winding number says that they are inside out, and leaves those turned for
+/// which that mends it: a sheet beside a wrong one has the winding number of an inverted one, turned or not. `around`
+/// tells the winding number at some sub-domains.
+fn turn_inverted(
+    edges: &[Edge],
+    adjacency: &Adjacency,
+    around: impl Fn(&[f32], &[u32]) -> Vec<f64>,
+    signs: &mut [f32],
+) {
+    /// Half way from what says nothing, 0, to what an inverted closed surface has.
+    const INVERTED: f64 = -0.25;
+    let all: Vec<u32> = (0..signs.len() as u32).collect();
+    let mut seen: Vec<bool> = around(signs, &all).iter().map(|&w| w > INVERTED).collect();
+    let mut groups: Vec<Vec<u32>> = Vec::new();
+    for start in all {
+        if std::mem::replace(&mut seen[start as usize], true) {
+            continue;
+        }
+        let mut group = vec![start];
+        let mut next = 0;
+        while next < group.len() {
+            let s = group[next];
+            for &(e, t) in adjacency.of(s) {
+                let agreement = edges[e as usize].weight * signs[s as usize] * signs[t as usize];
+                if agreement > 0.0 && !std::mem::replace(&mut seen[t as usize], true) {
+                    group.push(t);
+                }
+            }
+            next += 1;
+        }
+        groups.push(group);
+    }
+    if groups.is_empty() {
+        return;
+    }
+    groups.iter().for_each(|group| turn(group, signs));
+    let after = around(signs, &groups.concat());
+    let mut after = after.into_iter();
+    for group in &groups {
+        if after.by_ref().take(group.len()).sum::<f64>() <= 0.0 {
+            turn(group, signs);
+        }
+    }
+    flip_single(edges, adjacency, signs);
+}
+
+/// The winding number at some sub-domains: the mean over a few sites of each. What lies within a spacing hardly counts, as
+/// it is the sub-domain itself.
+fn winding(
+    which: &[u32],
+    fits: &Fits,
+    sites: &Sites,
+    gradients: &[Vec<Vec3>],
+    signs: &[f32],
+) -> Vec<f64> {
+    /// Sites of each, at most.
+    const SAMPLES: usize = 4;
+    let normals = site_normals(fits, sites, gradients, signs);
+    let winding = Winding::new(&sites.tree, &normals, &sites.spacing);
+    let mean = |k: usize| {
+        let subdomain = &fits.subdomains[which[k] as usize];
+        let step = subdomain.core.div_ceil(SAMPLES);
+        let samples = subdomain.support[..subdomain.core].iter().step_by(step);
+        let at = |&i: &u32| {
+            let (p, blur) = (sites.tree.points[i as usize], sites.spacing[i as usize]);
+            winding.around(p.as_dvec3(), f64::from(blur))
+        };
+        samples.map(at).sum::<f64>() / subdomain.core.div_ceil(step) as f64
+    };
+    par::map(which.len(), || (), |k, ()| mean(k))
 }
 
 /// The oriented normal of every site: the gradient of the function whose core it is in.

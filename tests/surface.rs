@@ -70,16 +70,14 @@ fn check(shape: Shape, s: &Surface, error: f64) {
     // Orientation: every normal of the fitted points and of the vertices looks out. On a crease either side is right.
     let fitted = s.cloud.reduced.cloud.positions_f64();
     let normals = s.cloud.reduced.cloud.normals.as_ref().unwrap();
-    let outward = points(&fitted)
+    let looks_in = |p: DVec3, n: DVec3| shape.distance(p + n * 0.1) <= shape.distance(p - n * 0.1);
+    let wrong = points(&fitted)
         .zip(normals)
-        .filter(|(p, n)| {
-            shape.distance(*p + n.as_dvec3() * 0.1) > shape.distance(*p - n.as_dvec3() * 0.1)
-        })
-        .count();
-    assert_eq!(outward, normals.len(), "{shape:?}: points oriented right");
+        .filter(|&(p, n)| looks_in(p, n.as_dvec3()));
+    assert_eq!(wrong.count(), 0, "{shape:?}: points oriented right");
     let wrong = points(&positions)
         .zip(&s.mesh.normals)
-        .filter(|(p, n)| shape.normal(*p).dot(n.as_dvec3()) < 0.0);
+        .filter(|&(p, n)| looks_in(p, n.as_dvec3()));
     assert_eq!(wrong.count(), 0, "{shape:?}: vertex normals");
 }
 
@@ -335,7 +333,7 @@ fn nested_shells_bound_the_solid_between_them() {
 
 #[test]
 fn thin_plates_have_two_sides() {
-    for (spacings, share) in [(3.0, 0.002), (1.5, 0.02)] {
+    for (spacings, share) in [(3.0, 0.002), (1.5, 0.005)] {
         let n = 6000;
         let half = (0..50).fold(0.0, |half: f64, _| {
             spacings / 2.0 * ((8.0 + 16.0 * half) / n as f64).sqrt()
@@ -371,12 +369,15 @@ fn thin_plates_have_two_sides() {
 
 #[test]
 fn two_spheres_that_touch_both_look_out() {
-    let mut positions = Shape::Sphere.sample(3000, 0.0, 22);
-    let other = Shape::Sphere.sample(3000, 0.0, 23);
-    positions.extend(points(&other).flat_map(|p| (p + 2.0 * DVec3::X).to_array()));
-    let s = surface(&positions, &unreduced()).unwrap();
-    let wrong = wrong_normals(&s, |p| if p.x < 1.0 { p } else { p - 2.0 * DVec3::X });
-    assert!(wrong < 90, "{wrong} of 6000");
+    // Few points touch: what tells the sides is what each sphere encloses.
+    for (n, seed) in [(750, 5), (1500, 5), (1500, 22), (3000, 22)] {
+        let mut positions = Shape::Sphere.sample(n, 0.0, seed);
+        let other = Shape::Sphere.sample(n, 0.0, seed + 1);
+        positions.extend(points(&other).flat_map(|p| (p + 2.0 * DVec3::X).to_array()));
+        let s = surface(&positions, &unreduced()).unwrap();
+        let wrong = wrong_normals(&s, |p| if p.x < 1.0 { p } else { p - 2.0 * DVec3::X });
+        assert!(wrong < 90, "{wrong} of {}", 2 * n);
+    }
 }
 
 #[test]
