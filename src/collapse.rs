@@ -5,8 +5,6 @@ use glam::DVec3;
 
 /// A new triangle's normal is within 45° of that of the one it replaces (cosine).
 const TURNED: f64 = 0.7;
-/// And within 78° of the normals of its corners: what turns in small steps does not fold.
-const FACING: f64 = 0.2;
 /// No edge is folded by more than 120° (cosine), unless it was more before.
 const FOLDED: f64 = -0.5;
 
@@ -134,27 +132,31 @@ impl Star {
         }
     }
 
-    /// Whether a collapse of `v` onto corner `to` folds an edge: one of the new ones, or one of the ring.
+    /// Whether a collapse onto corner `to` folds an edge: one of the new ones, or one of the ring.
     fn folds(&self, to: usize, mesh: &Mesh, around: &Around) -> bool {
         let n = self.ring.len();
         let corner = |k: usize| &self.ring[(to + k) % n];
-        let normal = |k: usize| {
+        let inside = |k: usize| {
             let [a, b, c] = [corner(0), corner(k), corner(k + 1)].map(|c| c.position);
-            (b - a).cross(c - a).normalize_or_zero()
+            (b - a).cross(c - a)
         };
-        let mut inner = normal(1);
+        let mut inner = inside(1);
         for k in 0..n {
             let last = inner;
-            inner = normal(k.clamp(1, n - 2));
+            inner = inside(k.clamp(1, n - 2));
+            if cosine_if_negative(last, inner) < FOLDED {
+                return true;
+            }
             let [a, b] = [corner(k).vertex, corner(k + 1).vertex];
-            let beyond = |t: &&u32| others(mesh.triangles[**t as usize], a)[1] == b;
-            let outer = around.of(a).iter().find(beyond).map_or(inner, |&t| {
-                let [p, q, r] =
-                    mesh.triangles[t as usize].map(|w| mesh.vertices[w as usize].as_dvec3());
-                (q - p).cross(r - p).normalize_or_zero()
-            });
-            let before = outer.dot(corner(k).face);
-            if last.dot(inner) < FOLDED || outer.dot(inner) < FOLDED.min(before) {
+            let is_beyond = |t: &&u32| others(mesh.triangles[**t as usize], a)[1] == b;
+            let Some(&beyond) = around.of(a).iter().find(is_beyond) else {
+                continue;
+            };
+            let [p, q, r] =
+                mesh.triangles[beyond as usize].map(|w| mesh.vertices[w as usize].as_dvec3());
+            let outer = (q - p).cross(r - p);
+            let after = cosine_if_negative(outer, inner);
+            if after < FOLDED && after < cosine_if_negative(outer, corner(k).face) {
                 return true;
             }
         }
@@ -221,13 +223,8 @@ impl Star {
             let triangle = Shape::of([apex.position, a.position, b.position]);
             let square = triangle.cross.length_squared();
             let twice = square.sqrt();
-            let normals = [apex.normal, a.normal, b.normal];
-            if square < rules.least_sine2 * triangle.longest2
-                || triangle.cross.dot(a.face) < TURNED * twice
-                || normals
-                    .into_iter()
-                    .any(|n| triangle.cross.dot(n) < FACING * twice)
-            {
+            let facing = triangle.cross.dot(a.face);
+            if square < rules.least_sine2 * triangle.longest2 || facing < TURNED * twice {
                 return None;
             }
             let following = bend(b.position - apex.position, b.normal - apex.normal, rules);
@@ -244,6 +241,16 @@ impl Star {
 /// `κ L²` of an edge `along` which the normals turn by `turn`, see [`crate::simplify`].
 fn bend(along: DVec3, turn: DVec3, rules: &Rules) -> f64 {
     along.dot(turn).abs() + rules.bend * along.length_squared()
+}
+
+/// The cosine between two vectors; 0 if it is positive, which takes no root.
+fn cosine_if_negative(a: DVec3, b: DVec3) -> f64 {
+    let dot = a.dot(b);
+    if dot < 0.0 {
+        dot / (a.length_squared() * b.length_squared()).sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// What tells whether a triangle is well shaped.

@@ -59,7 +59,7 @@ pub(crate) fn simplify(
         let needed = (mesh.triangles.len() - most).div_ceil(2);
         let around = Around::new(mesh);
         let count = needed.max(ranking.out.len() / LEAST_SHARE);
-        let stale = ranking.cheap(count, true);
+        let stale = ranking.to_look_at(count);
         for slice in stale.chunks(TASKS_PER_SLICE * VERTICES_PER_TASK) {
             tell()?;
             let tasks: Vec<&[u32]> = slice.chunks(VERTICES_PER_TASK).collect();
@@ -72,7 +72,7 @@ pub(crate) fn simplify(
                 ranking.set(v, found);
             }
         }
-        let order = ranking.cheap(count, false);
+        let order = ranking.to_collapse(count);
         if order.is_empty() && stale.is_empty() {
             if rules.least_sine2 == LAST_SINE2 {
                 break;
@@ -153,25 +153,37 @@ impl Ranking {
         self.stale[v as usize] = false;
     }
 
-    /// The vertices, stale ones or the others, that are among the `count` cheapest of all, in ascending order of cost;
-    /// stale ones of which nothing is known come first.
-    fn cheap(&self, count: usize, stale: bool) -> Vec<u32> {
-        let by_cost = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let cost = |v: u32| match self.known[v as usize] {
-            Some(known) => Some((known.cost, v)),
-            None => self.stale[v as usize].then_some((f64::NEG_INFINITY, v)),
+    /// What the collapse of a vertex costs, as far as is known, -∞ where nothing is; `None` if there is none.
+    fn cost(&self, v: usize) -> Option<f64> {
+        match self.known[v] {
+            _ if self.out[v] => None,
+            Some(known) => Some(known.cost),
+            None => self.stale[v].then_some(f64::NEG_INFINITY),
+        }
+    }
+
+    /// The vertices, stale ones or the others, that are among the `count` cheapest of all, with their costs.
+    fn cheap(&self, count: usize, stale: bool) -> impl Iterator<Item = (f64, u32)> {
+        let mut costs: Vec<f64> = (0..self.out.len()).filter_map(|v| self.cost(v)).collect();
+        let dearest = if count < costs.len() {
+            *costs.select_nth_unstable_by(count, f64::total_cmp).1
+        } else {
+            f64::INFINITY
         };
-        let all = (0..self.out.len() as u32).filter(|&v| !self.out[v as usize]);
-        let mut costs: Vec<(f64, u32)> = all.filter_map(cost).collect();
-        if count < costs.len() {
-            let dearest = costs.select_nth_unstable_by(count, by_cost).1.0;
-            costs.retain(|c| c.0 <= dearest);
-        }
-        costs.retain(|c| self.stale[c.1 as usize] == stale);
-        if !stale {
-            costs.sort_unstable_by(by_cost);
-        }
-        costs.into_iter().map(|c| c.1).collect()
+        let of_kind = (0..self.out.len()).filter(move |&v| self.stale[v] == stale);
+        of_kind.filter_map(move |v| Some((self.cost(v).filter(|&c| c <= dearest)?, v as u32)))
+    }
+
+    /// Those of which little is known, in ascending order.
+    fn to_look_at(&self, count: usize) -> Vec<u32> {
+        self.cheap(count, true).map(|c| c.1).collect()
+    }
+
+    /// The others, in ascending order of cost.
+    fn to_collapse(&self, count: usize) -> Vec<u32> {
+        let mut cheap: Vec<(f64, u32)> = self.cheap(count, false).collect();
+        cheap.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        cheap.into_iter().map(|c| c.1).collect()
     }
 }
 
