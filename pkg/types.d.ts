@@ -125,7 +125,10 @@ export interface ReconstructOptions {
   orient?: boolean;
   /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
   propagation?: 'global' | 'paper';
-  /** Edge length of the extraction grid, a fraction, 1e-4 to 0.25; `'auto'` (default) follows the spacing. */
+  /**
+   * Edge length of the extraction grid, a fraction, 1e-4 to 0.25: the mesh is as dense everywhere. `'auto'` (default)
+   * follows the spacing and has at most three triangles for each fitted point, more where the surface is curved.
+   */
   resolution?: number | 'auto';
   /** Keep creases in the mesh. Default `true`. */
   sharp?: boolean;

@@ -55,7 +55,7 @@ pub(crate) struct Vertex {
     /// Crossed edges of its loop: the quads around it, if none is left out.
     pub(crate) degree: u8,
     /// On a crease.
-    sharp: bool,
+    pub(crate) sharp: bool,
 }
 
 /// The quad around a crossed edge, to be cut from its first corner to its third; counter-clockwise seen from outside.

@@ -3,6 +3,7 @@
 //! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
 //! 3. `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//! 4. `simplify`: fewer triangles where the surface is flat.
 //!
 //! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
 
@@ -12,6 +13,7 @@ use crate::error::Result;
 use crate::params::Boundary;
 use crate::progress::Progress;
 use crate::rims;
+use crate::simplify::simplify;
 use crate::trim::{decide_holes, drop_phantoms, split_bow_ties, summarise, trim_rims};
 use glam::{DVec3, Vec3};
 
@@ -48,6 +50,9 @@ pub struct ExtractParams {
     pub boundary: Boundary,
     /// Put vertices on creases and corners of the zero set.
     pub sharp: bool,
+    /// Edges are collapsed where the surface is flat until no more triangles are left than this, as far as the mesh
+    /// stays manifold and well shaped; `None`: all that the lattice makes.
+    pub most: Option<usize>,
 }
 
 /// A triangle mesh in the unit frame.
@@ -112,22 +117,26 @@ pub fn extract<F: Implicit>(
         (points, reach),
         params.resolution,
         params.boundary,
-        &mut span(progress, 0.0, 0.5),
+        &mut span(progress, 0.0, 0.4),
     )?;
     let mut dual = build(
         field,
         &lattice,
         params.sharp,
-        &mut span(progress, 0.5, 0.95),
+        &mut span(progress, 0.4, 0.75),
     )?;
     decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points);
     let (filled, closed, open) = summarise(&dual);
-    let mut mesh = triangulate(dual);
+    let (mut mesh, on_crease) = triangulate(dual);
     rims::smooth(&mut mesh);
-    span(progress, 0.95, 1.0)(1.0)?;
+    let mut span = span(progress, 0.75, 1.0);
+    if let Some(most) = params.most {
+        simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
+    }
+    span(1.0)?;
     Ok(Extracted {
         mesh,
         filled,
@@ -136,8 +145,9 @@ pub fn extract<F: Implicit>(
     })
 }
 
-/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
-fn triangulate(dual: Dual) -> Mesh {
+/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'. Says
+/// of each vertex whether it is on a crease.
+fn triangulate(dual: Dual) -> (Mesh, Vec<bool>) {
     let mut index = vec![u32::MAX; dual.vertices.len()];
     dual.quads
         .iter()
@@ -147,6 +157,7 @@ fn triangulate(dual: Dual) -> Mesh {
         triangles: Vec::with_capacity(2 * dual.quads.len()),
         ..Mesh::default()
     };
+    let mut on_crease = Vec::new();
     for (vertex, index) in dual
         .vertices
         .iter()
@@ -156,6 +167,7 @@ fn triangulate(dual: Dual) -> Mesh {
         *index = mesh.vertices.len() as u32;
         mesh.vertices.push(vertex.position);
         mesh.normals.push(vertex.normal);
+        on_crease.push(vertex.sharp);
     }
     for quad in &dual.quads {
         let [p, q, r, s] = quad.vertices.map(|v| index[v as usize]);
@@ -176,5 +188,5 @@ fn triangulate(dual: Dual) -> Mesh {
     {
         *normal = sum.normalize_or(DVec3::Z).as_vec3();
     }
-    mesh
+    (mesh, on_crease)
 }

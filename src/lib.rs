@@ -76,6 +76,8 @@ mod dual;
 mod creases;
 mod trim;
 mod rims;
+mod simplify;
+mod collapse;
 pub mod attach;
 pub mod report;
 pub mod distance;

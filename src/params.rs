@@ -178,9 +178,10 @@ pub enum Smoothing {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Resolution {
-    /// Three quarters of the median spacing of the fitted points.
+    /// Three quarters of the median spacing of the fitted points; then edges are collapsed where the surface is flat until
+    /// at most three triangles a fitted point are left.
     Auto,
-    /// Fraction of the diagonal, 1e-4 to 0.25.
+    /// Fraction of the diagonal, 1e-4 to 0.25. The mesh is as dense as the grid.
     #[serde(untagged)]
     Edge(f64),
 }

@@ -100,8 +100,10 @@ const MIN_POINTS: usize = 4;
 const MIN_REDUCED: usize = 64;
 
 /// Edge length of the extraction grid in median spacings: vertices are moved onto the zero set, so that edges of 0.5 to
-/// 0.9 spacings give the same error (bench clouds: within 2 %), at 11 and 3.4 triangles a point.
+/// 0.9 spacings give the same error (bench clouds: within 2 %), at 11 and 3.4 triangles a point before simplification.
 const EDGE: f64 = 0.75;
+/// Triangles a fitted point, at most, unless the caller chooses a resolution.
+const TRIANGLES: usize = 3;
 
 /// Reduces a cloud (section 3).
 ///
@@ -512,6 +514,7 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
         resolution,
         boundary: params.boundary,
         sharp: params.sharp,
+        most: (params.resolution == Resolution::Auto).then(|| TRIANGLES * sites.tree.points.len()),
     }
 }
 

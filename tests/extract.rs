@@ -81,6 +81,7 @@ const SMOOTH: ExtractParams = ExtractParams {
     resolution: 0.01,
     boundary: Boundary::Auto,
     sharp: false,
+    most: None,
 };
 const SHARP: ExtractParams = ExtractParams {
     sharp: true,
@@ -363,6 +364,38 @@ fn gyroid_has_its_tunnels() {
     assert_eq!(r.topology.genus[0], coarse.topology.genus[0]);
 }
 
+/// Of a torus and a cube as many triangles are left as are asked for, where they matter, and vertices as exact as before.
+#[test]
+fn triangles_as_many_as_asked_for() {
+    for (params, value) in [(SMOOTH, torus as fn(DVec3) -> f64), (SHARP, cube)] {
+        let all = check_everywhere(value, params);
+        let count = all.out.mesh.triangles.len();
+        for share in [2, 4] {
+            let most = Some(count / share);
+            let few = check_everywhere(value, ExtractParams { most, ..params });
+            let left = few.out.mesh.triangles.len();
+            assert!(
+                left <= count / share && left + 2 > count / share,
+                "{left} of {count}"
+            );
+            assert_eq!(few.topology, all.topology);
+            assert!(few.errors(value).0 <= all.errors(value).0);
+            assert!((few.volume() / all.volume() - 1.0).abs() < 2e-3);
+            let kept = |v: &Vec3| all.out.mesh.vertices.contains(v);
+            assert!(few.out.mesh.vertices.iter().step_by(50).all(kept));
+        }
+        // Fewer than there can be: what is left is still the same surface, and manifold.
+        let least = check_everywhere(
+            value,
+            ExtractParams {
+                most: Some(0),
+                ..params
+            },
+        );
+        assert_eq!(least.topology, all.topology);
+    }
+}
+
 /// White noise at the lattice's own scale: every ambiguous configuration, many at once.
 #[test]
 fn noise_is_manifold() {
@@ -382,11 +415,12 @@ fn noise_is_manifold() {
         let patches =
             |x: DVec3| libm::sin(40.0 * x.x) + libm::sin(50.0 * x.y) + libm::sin(60.0 * x.z) > -0.3;
         for boundary in [Boundary::Open, Boundary::Auto, Boundary::Closed] {
-            for sharp in [false, true] {
+            for (sharp, most) in [(false, None), (true, None), (true, Some(1000))] {
                 let params = ExtractParams {
                     resolution: h,
                     boundary,
                     sharp,
+                    most,
                 };
                 let all = check(
                     &Analytic {
@@ -397,7 +431,7 @@ fn noise_is_manifold() {
                     &points,
                     params,
                 );
-                assert!(all.out.mesh.triangles.len() > 10_000);
+                assert!(most.is_some() || all.out.mesh.triangles.len() > 10_000);
                 let some = check(
                     &Analytic {
                         value: noise,
@@ -407,7 +441,7 @@ fn noise_is_manifold() {
                     &points,
                     params,
                 );
-                assert!(some.out.mesh.triangles.len() > 1_000);
+                assert!(most.is_some() || some.out.mesh.triangles.len() > 1_000);
             }
         }
     }

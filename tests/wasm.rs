@@ -15,5 +15,7 @@ mod reduce;
 mod report;
 #[path = "samples.rs"]
 mod samples;
+#[path = "simplify.rs"]
+mod simplify;
 #[path = "surface.rs"]
 mod surface;
