@@ -324,14 +324,15 @@ impl Forest {
     /// w s s over the edges that leave it: added at both ends and taken off twice at their lowest common ancestor, it is
     /// a sum over the branch.
     fn flip_branches(&self, edges: &[Edge], signs: &mut [f32]) {
+        let ancestors: Vec<u32> = edges.iter().map(|e| self.ancestor(e.a, e.b)).collect();
         // Every round lowers the energy by a finite amount; the bound only guards the time on graphs without order.
         for _ in 0..200 {
             let mut cut = vec![0.0f64; signs.len()];
-            for e in edges {
+            for (e, &ancestor) in edges.iter().zip(&ancestors) {
                 let agreement = (e.weight * signs[e.a as usize] * signs[e.b as usize]) as f64;
                 cut[e.a as usize] += agreement;
                 cut[e.b as usize] += agreement;
-                cut[self.ancestor(e.a, e.b) as usize] -= 2.0 * agreement;
+                cut[ancestor as usize] -= 2.0 * agreement;
             }
             let mut worst = (-1e-6, u32::MAX);
             for &s in self.order.iter().rev() {
