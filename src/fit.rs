@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::faces::Faces;
 use crate::kernel::phi;
 use crate::local::{LocalFit, Rbf};
-use crate::octree::Octree;
+use crate::octree::Neighbor;
 use crate::par;
 use crate::params::{Kernel, Smoothing, SurfaceParams};
 use crate::progress::{Progress, Stage};
@@ -46,7 +46,8 @@ const MAX_CUTS: usize = 2;
 /// higher at half and twice that.
 const ROUGHNESS: f64 = 0.25;
 
-/// Fits every sub-domain and refines those that miss the accuracy at the `input` points.
+/// Fits every sub-domain and refines those that miss the accuracy at the `input` points, each of which stands for the site
+/// that `site_of` names, if any.
 ///
 /// A sub-domain is cut in two and fitted again when the rms distance of the input points nearest to its core exceeds
 /// `accuracy` and what the noise explains (section 5: "computed and refined until desired accuracy"), and stays cut where
@@ -54,15 +55,21 @@ const ROUGHNESS: f64 = 0.25;
 pub fn fit(
     subdomains: Vec<Subdomain>,
     sites: &Sites,
-    input: &Octree,
+    (input, site_of): (&[Vec3], impl Iterator<Item = Option<u32>>),
     input_noise: f32,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<Fits> {
+    let mut owned = vec![Vec::new(); sites.tree.points.len()];
+    for (i, site) in site_of.enumerate() {
+        if let Some(site) = site {
+            owned[site as usize].push(i as u32);
+        }
+    }
     let fitting = Fitting {
         sites,
         input,
-        owned: input_of_sites(sites, input),
+        owned,
         allowed: (params.accuracy as f32).max(1.25 * input_noise),
         params,
     };
@@ -77,7 +84,7 @@ pub fn fit(
         subdomains: Vec::new(),
         functions: Vec::new(),
         refinements: 0,
-        residuals: vec![0.0; input.points.len()],
+        residuals: vec![0.0; input.len()],
     };
     for refined in done {
         fits.refinements += refined.len().saturating_sub(1);
@@ -98,8 +105,8 @@ type Refined = (Subdomain, LocalFit, Vec<(u32, f32)>);
 /// What the refinement of every sub-domain reads.
 struct Fitting<'a> {
     sites: &'a Sites,
-    input: &'a Octree,
-    /// For every site the input points nearest to it.
+    input: &'a [Vec3],
+    /// For every site the input points that it stands for.
     owned: Vec<Vec<u32>>,
     /// Largest rms residual that is not refined.
     allowed: f32,
@@ -157,7 +164,7 @@ impl Fitting<'_> {
             .flat_map(|&i| &self.owned[i as usize])
             .copied()
             .collect();
-        let at: Vec<Vec3> = own.iter().map(|&i| self.input.points[i as usize]).collect();
+        let at: Vec<Vec3> = own.iter().map(|&i| self.input[i as usize]).collect();
         let function = self.function(&subdomain, &at);
         let residuals: Vec<(u32, f32)> = own.into_iter().zip(function.distances(&at)).collect();
         let whole = vec![(subdomain, function, residuals)];
@@ -183,20 +190,6 @@ impl Fitting<'_> {
 fn squares(fits: &[Refined]) -> f64 {
     let residuals = fits.iter().flat_map(|(_, _, residuals)| residuals);
     residuals.map(|&(_, r)| (r as f64).powi(2)).sum()
-}
-
-/// For every site the input points nearest to it.
-fn input_of_sites(sites: &Sites, input: &Octree) -> Vec<Vec<u32>> {
-    let nearest = par::map(
-        input.points.len(),
-        || (),
-        |i, _| sites.tree.nearest(input.points[i]).index,
-    );
-    let mut owned = vec![Vec::new(); sites.tree.points.len()];
-    for (i, site) in nearest.into_iter().enumerate() {
-        owned[site as usize].push(i as u32);
-    }
-    owned
 }
 
 /// Eq. 11 of one sub-domain, in its own coordinates: origin at the mean of its support, unit its radius.
@@ -322,7 +315,11 @@ fn free_offset(sites: &Sites, s: &Subdomain, i: u32, normal: Vec3, wanted: f32) 
     [wanted, 0.5 * wanted, 0.25 * wanted]
         .into_iter()
         .find(|&d| {
-            let near = sites.tree.nearest(p + normal * d);
+            let own = Neighbor {
+                distance2: d * d,
+                index: i,
+            };
+            let near = sites.tree.nearer_than(own, p + normal * d);
             s.support.contains(&near.index) && near.distance2.sqrt() >= 0.6 * d
         })
 }

@@ -195,7 +195,20 @@ pub fn reconstruct(
         &mut clock,
     )?;
     let subdomains = cells::divide(&sites, &mut clock)?;
-    let fits = fit::fit(subdomains, &sites, tree, features.noise, params, &mut clock)?;
+    let mut site_of = vec![None; positions.len()];
+    for (site, &i) in sites.tree.order.iter().enumerate() {
+        site_of[i as usize] = Some(site as u32);
+    }
+    let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
+    let input_of = (&tree.points[..], stands_for);
+    let fits = fit::fit(
+        subdomains,
+        &sites,
+        input_of,
+        features.noise,
+        params,
+        &mut clock,
+    )?;
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
