@@ -1,9 +1,10 @@
-// `cargo xtask bench [tables] [growth] [fcm] [peer] [threads]`: what Pointweave costs, in this process.
+// `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
 //   growth   the reduction of ten thousand to ten million points: time and memory a point
 //   fcm      our clustering beside scikit-fuzzy's
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
+//   surface  from points to a mesh beside Open3D: normals, their orientation, Poisson
 //   threads  one thread beside two, the same bytes
 //
 // Times are medians of several runs; machines differ, so compare ratios.
@@ -36,7 +37,7 @@ const NEVER = Number.MIN_VALUE;
 /** Cells on which scikit-fuzzy is timed. */
 const TIMED_CELLS = 40;
 
-const benches = { tables, growth, fcm, peer, threads };
+const benches = { tables, growth, fcm, peer, surface, threads };
 const asked = process.argv.slice(2);
 const unknown = asked.find((name) => !(name in benches));
 if (unknown !== undefined) {
@@ -190,6 +191,31 @@ async function peer() {
   ]);
 }
 
+async function surface() {
+  const engine = await createEngine({ threads: 1 });
+  const jobs = [];
+  for (const [name, count, depth] of [['pig', 36_000, 8], ['duck', 36_000, 8], ['pig', PAPER.pig.original, 9]]) {
+    jobs.push({ name, depth, scan: await engine.sample(name, { count, seed: 0 }) });
+  }
+  const rows = [];
+  for (const { name, depth, scan } of jobs) {
+    const positions = Float32Array.from(scan.positions);
+    const ours = await repeat(() => engine.reconstruct({ positions }));
+    const theirs = open3d(positions, depth);
+    rows.push([
+      name, positions.length / 3, ours.result.report.triangles, ours.ms.toFixed(0),
+      ...(theirs
+        ? [theirs.triangles, (1000 * theirs.seconds).toFixed(0), (ours.ms / 1000 / theirs.seconds).toFixed(3)]
+        : ['–', '–', '–']),
+    ]);
+  }
+  await engine.dispose();
+  print(
+    "Points to a mesh, defaults, beside Open3D's normals (k = 30), orientation (k = 15) and Poisson (single build, ms, one thread)",
+    [['scan', 'points', 'triangles', 'ms', "peer's", 'ms', 'ratio'], ...rows],
+  );
+}
+
 async function threads() {
   const engines = [await createEngine({ threads: 1 }), await createEngine({ threads: 2 })];
   const scan = await engines[0].sample('pig');
@@ -322,17 +348,27 @@ function skfuzzy(cells, error) {
     return undefined;
   }
   const { cellPoints, ratio, fuzzifier, maxIterations } = FCM;
-  const numbers = [cellPoints, cellPoints * ratio, fuzzifier, error, maxIterations, TIMED_CELLS].map(String);
-  const script = join(HERE, 'fcm_skfuzzy.py');
-  const { stdout, status, error: failure } = spawnSync(python, [script, ...numbers], {
-    input: new Uint8Array(cells.buffer),
+  const numbers = [cellPoints, cellPoints * ratio, fuzzifier, error, maxIterations, TIMED_CELLS];
+  return measured(python, 'fcm_skfuzzy.py', numbers, cells);
+}
+
+/** What surface_open3d.py measures on a cloud, with one thread; `undefined` where xtask found no Python for it. */
+function open3d(positions, depth) {
+  const python = process.env.OPEN3D_PYTHON;
+  return python ? measured(python, 'surface_open3d.py', [depth, RUNS], positions) : undefined;
+}
+
+/** What a script prints as JSON when it gets some numbers, and floats on its standard input. */
+function measured(python, script, numbers, floats) {
+  const { stdout, status, error } = spawnSync(python, [join(HERE, script), ...numbers.map(String)], {
+    input: new Uint8Array(floats.buffer, floats.byteOffset, floats.byteLength),
     stdio: ['pipe', 'pipe', 'inherit'],
     env: { ...process.env, OMP_NUM_THREADS: '1', OPENBLAS_NUM_THREADS: '1' },
   });
   if (status !== 0) {
-    throw failure ?? new Error(`fcm_skfuzzy.py failed (${status}); its error is above`);
+    throw error ?? new Error(`${script} failed (${status}); its error is above`);
   }
-  return JSON.parse(stdout.toString());
+  return JSON.parse(stdout.toString().trim().split('\n').at(-1));
 }
 
 /** Our seconds, and the paper's. */

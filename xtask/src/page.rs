@@ -3,6 +3,7 @@
 use crate::build;
 use crate::setup;
 use crate::shell::{Result, command, root, run, say};
+use std::path::PathBuf;
 
 /// Builds the package and the page, and serves the page until it is stopped.
 pub fn serve(port: u16) -> Result<()> {
@@ -48,13 +49,18 @@ pub fn bench(arguments: &[String]) -> Result<()> {
     setup::npm(&root().join("tests"))?;
     let mut bench = command("node");
     bench.arg("tests/bench/bench.mjs").args(arguments);
-    if arguments.is_empty() || arguments.iter().any(|name| name == "fcm") {
-        match setup::skfuzzy() {
-            Ok(python) => {
-                bench.env("SKFUZZY_PYTHON", python);
+    let asked = |name| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
+    let mut peer = |name, variable: &str, install: fn() -> Result<PathBuf>| {
+        if asked(name) {
+            match install() {
+                Ok(python) => {
+                    bench.env(variable, python);
+                }
+                Err(sentence) => say(&format!("{sentence}; `{name}` leaves its peer out")),
             }
-            Err(sentence) => say(&format!("{sentence}; `fcm` leaves scikit-fuzzy out")),
         }
-    }
+    };
+    peer("fcm", "SKFUZZY_PYTHON", setup::skfuzzy);
+    peer("surface", "OPEN3D_PYTHON", setup::open3d);
     run(&mut bench, "a benchmark failed; its error is above")
 }

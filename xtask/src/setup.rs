@@ -137,10 +137,20 @@ pub fn npm(folder: &Path) -> Result<()> {
     })
 }
 
-/// A Python with scikit-fuzzy, in a virtual environment in target/.
+/// A Python with scikit-fuzzy.
 pub fn skfuzzy() -> Result<PathBuf> {
-    let requirements = root().join("tests/bench/requirements.txt");
-    let environment = root().join("target/skfuzzy");
+    python("skfuzzy", "scikit-fuzzy")
+}
+
+/// A Python with Open3D.
+pub fn open3d() -> Result<PathBuf> {
+    python("open3d", "Open3D")
+}
+
+/// A Python with what tests/bench/`name`.txt lists, in a virtual environment in target/.
+fn python(name: &str, what: &str) -> Result<PathBuf> {
+    let requirements = root().join(format!("tests/bench/{name}.txt"));
+    let environment = root().join("target").join(name);
     let python = environment.join(if cfg!(windows) {
         "Scripts/python.exe"
     } else {
@@ -152,7 +162,7 @@ pub fn skfuzzy() -> Result<PathBuf> {
             .or_else(|| find("python"))
             .ok_or("Python is missing; install Python 3.11 or newer with venv and pip")?;
         say(&format!(
-            "installing scikit-fuzzy into {} with pip",
+            "installing {what} into {} with pip",
             environment.display()
         ));
         let mut venv = command(system);
