@@ -1,5 +1,5 @@
 //! Closed components inside of others: which are the walls of caves (by the generalised winding number, as in
-//! [`crate::field`]).
+//! [`crate::winding`]).
 
 use crate::cells::Sites;
 use crate::fit::Fits;
