@@ -15,10 +15,12 @@ use crate::kernel::wendland;
 use crate::lanes::Lanes;
 use crate::local::LocalFit;
 use crate::neighborhood::Block;
-use crate::octree::{Octree, morton};
+use crate::noise::quantile;
+use crate::octree::Octree;
 use crate::orient::Signs;
 use crate::winding::Winding;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// The joined function: negative inside, positive outside, about the distance near the surface.
 #[derive(Debug)]
@@ -61,8 +63,6 @@ const MOST_INSIDE: f64 = 0.95;
 /// Memory of one evaluating worker.
 #[derive(Debug, Default, Clone)]
 pub struct Scratch {
-    /// Places of the positions along a Morton curve, and the positions in that order.
-    order: Vec<usize>,
     points: Vec<Vec3>,
     parts: Vec<Part>,
 }
@@ -108,9 +108,7 @@ impl<'a> Field<'a> {
             .iter()
             .map(|n| reach[n.range()].iter().copied().fold(0.0, f32::max))
             .collect();
-        let mut spacings = sites.spacing.clone();
-        spacings.sort_unstable_by(f32::total_cmp);
-        let depth = 4.0 * spacings[spacings.len() / 2] as f64;
+        let depth = 4.0 * f64::from(quantile(sites.spacing.clone(), 2));
         let mut field = Field {
             functions: &fits.functions,
             signs: &signs.signs,
@@ -223,26 +221,19 @@ impl<'a> Field<'a> {
         Lanes::from_fn(|l| value[l])
     }
 
-    /// [`Field::blend`] of all positions: `of` gets the places of up to eight that lie close together.
+    /// [`Field::blend`] of all positions, a block at a time: `of` gets the places of up to eight.
     fn blend_all(
         &self,
         at: &[DVec3],
         scratch: &mut Scratch,
-        mut of: impl FnMut(&[usize], Blended),
+        mut of: impl FnMut(Range<usize>, Blended),
     ) {
-        let Scratch {
-            order,
-            points,
-            parts,
-        } = scratch;
-        order.clear();
-        order.extend(0..at.len());
-        order.sort_by_cached_key(|&k| morton(at[k].as_vec3()));
+        let Scratch { points, parts } = scratch;
         points.clear();
-        points.extend(order.iter().map(|&k| at[k].as_vec3()));
+        points.extend(at.iter().map(|x| x.as_vec3()));
         for block in Block::all(points, 0..points.len()) {
             let blended = self.blend(&block, parts);
-            of(&order[block.range], blended);
+            of(block.range, blended);
         }
     }
 
@@ -266,7 +257,7 @@ impl Implicit for Field<'_> {
     fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Scratch) {
         self.blend_all(at, scratch, |places, blended| {
             let value = blended.value.to_array();
-            for (&k, value) in places.iter().zip(value) {
+            for (k, value) in places.zip(value) {
                 values[k] = f64::from(value);
             }
         });
@@ -278,7 +269,7 @@ impl Implicit for Field<'_> {
                 blended.value.to_array(),
                 blended.gradient.map(Lanes::to_array),
             );
-            for (l, &k) in places.iter().enumerate() {
+            for (l, k) in places.enumerate() {
                 let slope = Vec3::from_array(gradient.map(|g| g[l])).as_dvec3();
                 found[k] = (!value[l].is_nan()).then(|| (f64::from(value[l]), slope));
             }

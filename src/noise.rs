@@ -69,8 +69,7 @@ impl Scales {
         let mut scales = Scales::new(0.0, 1.0);
         // A noise level found with too few neighbours is low, as they then fill a ball.
         for round in ROUNDS {
-            let step = groups.len().div_ceil(round);
-            let chosen: Vec<Range<usize>> = groups.iter().step_by(step).cloned().collect();
+            let chosen = some(&groups, round);
             let local = par::map(chosen.len(), Vec::new, |i, found| {
                 let of = |k| local(tree, k, scales.fit, found);
                 chosen[i].clone().map(of).collect::<Vec<Local>>()
@@ -94,12 +93,8 @@ impl Scales {
 pub(crate) fn within_sheets(tree: &Octree, normals: &[Vec3], scales: &Scales) -> f32 {
     let noise = scales.noise;
     let groups = tree.cut(|node| node.range().len() <= GROUP);
-    let chosen: Vec<Range<usize>> = groups
-        .iter()
-        .step_by(groups.len().div_ceil(ROUNDS[1]))
-        .cloned()
-        .collect();
-    let offsets = par::map(chosen.len(), Vec::new, |g, found| {
+    let chosen = some(&groups, ROUNDS[1]);
+    let mut offsets = par::map(chosen.len(), Vec::new, |g, found| {
         let mut offsets = Vec::new();
         for i in chosen[g].clone().step_by(SPARSE) {
             tree.knn(tree.points[i], scales.plane, found);
@@ -119,13 +114,18 @@ pub(crate) fn within_sheets(tree: &Octree, normals: &[Vec3], scales: &Scales) ->
         return noise;
     }
     let k = (SMALLER * offsets.len() as f32) as usize;
-    let mut offsets = offsets;
     let within = *offsets.select_nth_unstable_by(k, f32::total_cmp).1 / UNDER;
     if within < OF_TWO * noise {
         within
     } else {
         noise
     }
+}
+
+/// About `most` of the groups, evenly chosen.
+fn some(groups: &[Range<usize>], most: usize) -> Vec<Range<usize>> {
+    let step = groups.len().div_ceil(most);
+    groups.iter().step_by(step).cloned().collect()
 }
 
 /// The value that 1/`parts` of the values are below.

@@ -400,7 +400,7 @@ fn insert(out: &mut Vec<Neighbor>, k: usize, n: Neighbor) {
 }
 
 /// Interleaved bits of a position of the unit frame (every coordinate within ±0.5).
-pub(crate) fn morton(p: Vec3) -> u64 {
+fn morton(p: Vec3) -> u64 {
     let cell =
         |x: f32| (((x as f64 + 0.5) * (1u64 << MAX_DEPTH) as f64) as u64).min((1 << MAX_DEPTH) - 1);
     spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z))

@@ -10,7 +10,7 @@ use crate::features::Features;
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::{Patches, cloud_distances};
-use crate::noise::Scales;
+use crate::noise::{Scales, quantile};
 use crate::octree::Octree;
 use crate::orient;
 use crate::outliers;
@@ -518,9 +518,8 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
     let resolution = match params.resolution {
         Resolution::Edge(edge) => edge,
         Resolution::Auto => {
-            let mut spacing = sites.spacing.clone();
-            spacing.sort_unstable_by(f32::total_cmp);
-            (EDGE * spacing[spacing.len() / 2] as f64).clamp(1e-4, 0.25)
+            let spacing = quantile(sites.spacing.clone(), 2);
+            (EDGE * f64::from(spacing)).clamp(1e-4, 0.25)
         }
     };
     ExtractParams {

@@ -16,7 +16,7 @@ pub fn run() {
         "the diagonal; t/p: triangles a fitted point, {MOST_TRIANGLES} at most; shares of triangles with a least angle under 5, 15, 30 degrees"
     );
     println!(
-        "{:<22} {:>6} {:>6} {:>4} {:>6} {:>6} {:>7} {:>8} {:>5} {:>5} {:>5} {:>5} {:>6}",
+        "{:<24} {:>6} {:>6} {:>5} {:>6} {:>6} {:>7} {:>8} {:>5} {:>5} {:>5} {:>5} {:>6}",
         "cloud",
         "points",
         "noise%",
@@ -55,13 +55,7 @@ fn scans(noise: f64) -> Vec<Scan> {
 }
 
 fn row(scan: &Scan, kept: usize) {
-    let head = format!(
-        "{:<22} {:>6} {:>6.1} {:>4}",
-        scan.name,
-        scan.points.len(),
-        100.0 * scan.noise,
-        format!("1/{kept}")
-    );
+    let head = scan.head(kept);
     let s = match surface(&scan.points, &reduced_to(kept)) {
         Ok(s) => s,
         Err(error) => return println!("{head} {error}{}", mark(true)),

@@ -45,6 +45,17 @@ pub struct Scan {
 }
 
 impl Scan {
+    /// The first columns of its row in a table: name, points, noise in percent, and the share that is kept.
+    pub fn head(&self, kept: usize) -> String {
+        format!(
+            "{:<24} {:>6} {:>6.1} {:>5}",
+            self.name,
+            self.points.len(),
+            100.0 * self.noise,
+            format!("1/{kept}")
+        )
+    }
+
     pub fn new(name: impl Into<String>, truth: Truth, n: usize, noise: f64) -> Scan {
         let (points, normals) = truth.sample(n, 1);
         let mut scan = Scan {

@@ -26,7 +26,7 @@ pub fn run() {
     );
     println!("1 spacing from the mesh; auto must leave open what is open and close what is closed");
     println!(
-        "{:<22} {:>6} {:>6} {:>4} {:>6} {:>5} {:>6} {:>6} {:>7} {:>8} {:>7}",
+        "{:<24} {:>6} {:>6} {:>5} {:>6} {:>5} {:>6} {:>6} {:>7} {:>8} {:>7}",
         "cloud",
         "points",
         "noise%",
@@ -79,14 +79,8 @@ fn row(scan: &Scan, kept: usize, boundary: Boundary) {
         boundary,
         ..reduced_to(kept)
     };
-    let head = format!(
-        "{:<22} {:>6} {:>6.1} {:>4} {:>6}",
-        scan.name,
-        scan.points.len(),
-        100.0 * scan.noise,
-        format!("1/{kept}"),
-        format!("{boundary:?}").to_lowercase()
-    );
+    let ends = format!("{boundary:?}").to_lowercase();
+    let head = format!("{} {ends:>6}", scan.head(kept));
     let s = match surface(&scan.points, &params) {
         Ok(s) => s,
         Err(error) => return println!("{head} {error}{}", mark(true)),

@@ -44,13 +44,7 @@ pub fn run() {
 
 fn row(case: &Case, kept: usize) {
     let scan = &case.scan;
-    let head = format!(
-        "{:<24} {:>6} {:>6.1} {:>5}",
-        scan.name,
-        scan.points.len(),
-        100.0 * scan.noise,
-        format!("1/{kept}")
-    );
+    let head = scan.head(kept);
     let run = |propagation| {
         let params = SurfaceParams {
             propagation,
