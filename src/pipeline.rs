@@ -42,7 +42,7 @@ pub struct Surface {
     pub colors: Option<Vec<[u8; 3]>>,
     /// One value a vertex for each scalar of the cloud.
     pub attributes: Vec<Attribute>,
-    /// The points that the surface was fitted to, with oriented normals.
+    /// The points that the surface was fitted to, with oriented normals; without their `shares`.
     pub cloud: ReducedCloud,
     /// Counts, distances, topology, times.
     pub report: SurfaceReport,
@@ -168,43 +168,54 @@ pub fn reconstruct(
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<Surface> {
+    reconstruct_input(Cow::Borrowed(cloud), params, progress)
+}
+
+/// [`reconstruct`] of a cloud that nobody needs any more.
+///
+/// # Errors
+/// The same.
+pub fn reconstruct_owned(
+    cloud: Cloud,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
+    reconstruct_input(Cow::Owned(cloud), params, progress)
+}
+
+fn reconstruct_input(
+    cloud: Cow<Cloud>,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
     params.validate()?;
-    check_surface(cloud, params)?;
+    check_surface(&cloud, params)?;
     let mut clock = Clock::new(progress);
     let outliers = params
         .reduce
         .as_ref()
         .map_or(Outliers::Keep, |r| r.outliers);
-    let input = Input::new(Cow::Borrowed(cloud), outliers, &mut clock)?;
     let Input {
+        cloud,
         tree,
         features,
         origin,
-        ..
-    } = &input;
+    } = Input::new(cloud, outliers, &mut clock)?;
     if features.normals.iter().all(|&n| n == Vec3::ZERO) {
         let found = "all points lie on one line or at one place".into();
         return Err(Error::Degenerate { found });
     }
-    let (mut reduced, positions) = points_to_fit(&input, params, &mut clock)?;
-    let (sites, site_of) = sites(
-        &reduced,
-        &positions,
-        features.noise,
-        params.orient,
-        &mut clock,
-    )?;
+    let noise = features.noise;
+    let (mut reduced, positions) = points_to_fit(&cloud, &tree, features, params, &mut clock)?;
+    drop(cloud);
+    let input = tree.into_points();
+    let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
+    drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
-    let input_of = (&tree.points[..], stands_for);
-    let fits = fit::fit(
-        subdomains,
-        &sites,
-        input_of,
-        features.noise,
-        params,
-        &mut clock,
-    )?;
+    let input_of = (&input[..], stands_for);
+    let fits = fit::fit(subdomains, &sites, input_of, noise, params, &mut clock)?;
+    reduced.shares = Vec::new();
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
@@ -222,9 +233,9 @@ pub fn reconstruct(
         }
     }
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
-    let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let distance = mesh_distance(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
-    let report = reduce_report((origin, features.noise), &reduced, distance, &clock);
+    let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
@@ -237,7 +248,7 @@ pub fn reconstruct(
         genus: topology.genus,
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
-        beyond_accuracy: beyond as f64 / tree.points.len() as f64,
+        beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
     };
     let cloud = ReducedCloud { reduced, report };
@@ -450,23 +461,32 @@ fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
     }
 }
 
-/// The reduced cloud that surfaces are fitted to.
+/// The reduced cloud that surfaces are fitted to, and where its points are for that.
 fn points_to_fit(
-    input: &Input,
+    cloud: &Cloud,
+    tree: &Octree,
+    mut features: Features,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<(Reduced, Vec<Vec3>)> {
-    let Input {
-        cloud,
-        tree,
-        features,
-        ..
-    } = input;
+    let n = tree.points.len();
+    let is_few = |count: usize| count < MIN_REDUCED.min(n);
     if let Some(params) = &params.reduce {
-        let reduced = reduce::reduce(cloud, tree, features.clone(), params, progress)?;
-        if reduced.cloud.len() >= MIN_REDUCED.min(tree.points.len()) {
-            let positions = reduced.cloud.points.clone();
-            return Ok((reduced, positions));
+        let count = params.target.count(n);
+        if !count.is_some_and(is_few) {
+            // The validity index may choose fewer centres, and a tolerance or a flatness any number: then the features are
+            // asked again.
+            let spare = count
+                .is_none_or(|count| count < 2 * MIN_REDUCED)
+                .then(|| features.clone());
+            let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
+            match spare {
+                Some(spare) if is_few(reduced.cloud.len()) => features = spare,
+                _ => {
+                    let positions = reduced.cloud.points.clone();
+                    return Ok((reduced, positions));
+                }
+            }
         }
     }
     let all = ReduceParams {
@@ -474,12 +494,12 @@ fn points_to_fit(
         assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
         ..Default::default()
     };
-    let mut reduced = reduce::reduce(cloud, tree, features.clone(), &all, progress)?;
+    let positions = (0..n).map(|i| features.denoised(tree, i)).collect();
+    let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    let denoised = |i| features.denoised(tree, i);
-    Ok((reduced, (0..tree.points.len()).map(denoised).collect()))
+    Ok((reduced, positions))
 }
 
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for

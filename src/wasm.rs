@@ -78,11 +78,12 @@ pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsRes
     reduced_to_js(&result, precision)
 }
 
-/// [`pipeline::reconstruct`].
+/// [`pipeline::reconstruct_owned`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
     let (input, precision) = cloud.to_cloud()?;
-    let mut surface = pipeline::reconstruct(&input, &from_js(options)?, &mut JsProgress(progress))?;
+    let options = from_js(options)?;
+    let mut surface = pipeline::reconstruct_owned(input, &options, &mut JsProgress(progress))?;
     sign(&mut surface.report.reduce);
     sign(&mut surface.cloud.report);
     surface_to_js(&surface, precision)
