@@ -120,12 +120,7 @@ pub fn extract<F: Implicit>(
         params.boundary,
         &mut span(progress, 0.0, 0.4),
     )?;
-    let mut dual = build(
-        field,
-        &lattice,
-        params.sharp,
-        &mut span(progress, 0.4, 0.75),
-    )?;
+    let mut dual = build(field, lattice, params.sharp, &mut span(progress, 0.4, 0.75))?;
     decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
