@@ -99,7 +99,7 @@ export interface ReduceOptions {
   /** Deepest level of the octree, 1 to 21. Default 21. */
   maxDepth?: number;
   /**
-   * How the cloud's attributes are carried to the reduced points, by name; `colors` names the colours. Default `{}`:
+   * How the cloud's attributes are carried to the reduced points and on to a mesh, by name; `colors` names the colours. Default `{}`:
    * every one is `'mean'`.
    */
   attributes?: Record<string, Carry>;

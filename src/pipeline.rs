@@ -223,7 +223,13 @@ pub fn reconstruct(
     for (&i, &normal) in sites.tree.order.iter().zip(&signs.normals) {
         normals[i as usize] = normal;
     }
-    let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
+    let carried = params.reduce.as_ref().map(|r| r.attributes.clone());
+    let (colors, attributes) = attach(
+        &mesh.vertices,
+        &sites.tree,
+        &reduced.cloud,
+        &carried.unwrap_or_default(),
+    );
     let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
     let report = reduce_report((origin, features.noise), &reduced, distance, &clock);
