@@ -113,7 +113,10 @@ export interface ReduceOptions {
 }
 
 export interface ReconstructOptions {
-  /** How the cloud is reduced first; `false` sends every point to the fit. Default {@link ReduceOptions}' defaults. */
+  /**
+   * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
+   * {@link ReduceOptions}' defaults.
+   */
   reduce?: ReduceOptions | false;
   /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
   accuracy?: number;

@@ -12,10 +12,12 @@ import { fileURLToPath } from 'node:url';
 import { validateBytes } from 'gltf-validator';
 import { inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { parse } from '../../pkg/cli/arguments.js';
+import { writeOutput } from '../../pkg/cli/files.js';
 import { WORDS } from '../../pkg/cli/help.js';
 import { UsageError } from '../../pkg/cli/usage.js';
 import { TABLES, TARGETS } from '../../pkg/options.js';
 import { openPage } from './browser.mjs';
+import { rejection } from './support.mjs';
 
 const CLI = fileURLToPath(new URL('../../pkg/cli.js', import.meta.url));
 /** Makes a program think that a person looks at its messages. */
@@ -103,7 +105,7 @@ test('--json prints the report and nothing else', async (t) => {
 });
 
 test('inspect tells it in words', async (t) => {
-  const far = await good(folder(t), ['inspect', '-'], '4512345.125 -543210.5 100\n4512346.125 -543211.5 101.0009765\n');
+  const far = await good(folder(t), ['inspect', '-'], '4512345.125 -543210.5 100\n4512346.125 -543211.5 101.0009766\n');
   assert.match(String(far.stdout), /lowest corner +4512345\.125 -543211\.5 100\n.*highest corner +4512346\.125 -543210\.5 101\.000977\n/);
   const { stdout } = await good(folder(t), ['inspect', 'scan.ply']);
   for (const said of [/^scan\.ply\n/, /points +1,500\n/, /not finite +0\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
@@ -230,6 +232,19 @@ test('an earlier result is replaced, through a link; a device is written to', as
   assert.match(readFileSync(join(path, 'old.xyz'), 'utf8'), /^# x y z .*\n(.+\n){9}$/);
   assert.ok(statSync(join(path, 'null.xyz')).isCharacterDevice());
   assert.deepEqual(readdirSync(path).sort(), ['link.xyz', 'null.xyz', 'old.xyz', 'scan.ply']);
+});
+
+test('a result that is not written to its end leaves what was there', async (t) => {
+  const path = folder(t);
+  const interrupted = new AbortController();
+  const bytes = new Uint8Array(1 << 27);
+  const writing = rejection(writeOutput(join(path, 'scan.ply'), bytes, interrupted.signal));
+  for (let tries = 0; readdirSync(path).length < 2 && tries < 5000; tries++) await new Promise((resolve) => setTimeout(resolve));
+  assert.match(readdirSync(path).join(), /^\.pointweave-.*\.part,scan\.ply$/, 'it is being written');
+  interrupted.abort();
+  assert.equal((await writing).code, 'ABORT_ERR');
+  assert.deepEqual(readdirSync(path), ['scan.ply']);
+  assert.deepEqual(readFileSync(join(path, 'scan.ply')), Buffer.from(scanFile));
 });
 
 test('Ctrl-C ends the work and leaves no file', async (t) => {
