@@ -232,7 +232,13 @@ fn reconstruct_input(
             *normal = signs.normals[*site as usize];
         }
     }
-    let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
+    let carried = params.reduce.as_ref().map(|r| r.attributes.clone());
+    let (colors, attributes) = attach(
+        &mesh.vertices,
+        &sites.tree,
+        &reduced.cloud,
+        &carried.unwrap_or_default(),
+    );
     let distance = mesh_distance(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);

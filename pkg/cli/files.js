@@ -1,0 +1,104 @@
+/** Files in, files out. A result is there whole or not at all. */
+import { randomUUID } from 'node:crypto';
+import { mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { addAbortSignal } from 'node:stream';
+import { buffer } from 'node:stream/consumers';
+
+/** What the system's codes mean. @type {Record<string, string>} */
+const MEANINGS = {
+  ENOENT: 'there is no such file or folder',
+  EISDIR: 'it is a folder',
+  EEXIST: 'a file has that name',
+  ENOTDIR: 'a part of the path is no folder',
+  EACCES: 'access is not allowed',
+  EPERM: 'access is not allowed',
+  ENOSPC: 'the disk is full',
+  EROFS: 'the disk is read-only',
+};
+
+/**
+ * @param {string} input a path, or - for standard input
+ * @param {AbortSignal} signal
+ * @returns {Promise<Uint8Array>}
+ */
+export function readInput(input, signal) {
+  return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : explained('', readFile(input, { signal }));
+}
+
+/**
+ * Whether there is a folder for the result: known before the work, not after it.
+ * @param {string} output
+ */
+export async function checkPlace(output) {
+  await explained(`'${output}' cannot be written: `, stat(dirname(output)));
+}
+
+/** @param {string} folder */
+export async function makeFolder(folder) {
+  await explained(`'${folder}' cannot be made: `, mkdir(folder, { recursive: true }));
+}
+
+/**
+ * @param {string} output
+ * @param {Uint8Array} bytes
+ * @param {AbortSignal} signal
+ */
+export async function writeOutput(output, bytes, signal) {
+  await explained(`'${output}' cannot be written: `, replace(output, bytes, signal));
+}
+
+/**
+ * Writes beside the place and moves there at the end, or nothing stays. What is no file (a device, a pipe) is written
+ * directly; a link is followed.
+ * @param {string} output
+ * @param {Uint8Array} bytes
+ * @param {AbortSignal} signal
+ */
+async function replace(output, bytes, signal) {
+  const there = await stat(output).catch(() => undefined);
+  if (there && !there.isFile()) return writeFile(output, bytes, { signal });
+  const target = there ? await realpath(output) : output;
+  const part = join(dirname(target), `.pointweave-${randomUUID()}.part`);
+  try {
+    await writeFile(part, bytes, { signal, mode: there && there.mode & 0o777 });
+    signal.throwIfAborted();
+    await rename(part, target);
+  } catch (error) {
+    await rm(part, { force: true });
+    throw error;
+  }
+}
+
+/**
+ * Whether two paths lead to one file.
+ * @param {string} a
+ * @param {string} b
+ */
+export async function sameFile(a, b) {
+  const [one, other] = await Promise.all([a, b].map((path) => stat(path, { bigint: true }).catch(() => undefined)));
+  return one !== undefined && other !== undefined && one.isFile() && one.dev === other.dev && one.ino === other.ino;
+}
+
+/**
+ * What a promise gives, or the system's error in words and with its code.
+ * @template T
+ * @param {string} what
+ * @param {Promise<T>} promise
+ */
+async function explained(what, promise) {
+  try {
+    return await promise;
+  } catch (error) {
+    const { code = '', message } = /** @type {NodeJS.ErrnoException} */ (error);
+    throw Object.assign(new Error(what + (MEANINGS[code] ?? message)), { code });
+  }
+}
+
+/**
+ * One line that says what went wrong.
+ * @param {unknown} error
+ */
+export function sentence(error) {
+  return error instanceof Error ? error.message.replace(/\s*\n\s*/g, ' ') : String(error);
+}
