@@ -214,7 +214,10 @@ export interface SurfaceReport extends ReduceReport {
   residual: Distances;
   /** Share of the input that stayed beyond the accuracy. */
   beyondAccuracy: number;
+  /** How far the local functions disagree on which side is out: -1 where all agree, 1 where none do. */
   orientationEnergy: number;
+  /** The same before conflicts were solved over the whole graph. */
+  orientationEnergyBefore: number;
 }
 
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {

@@ -256,6 +256,7 @@ fn reconstruct_input(
         residual: DistanceStats::of(residuals()),
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
+        orientation_energy_before: signs.energy_before,
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
