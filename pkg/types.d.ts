@@ -323,7 +323,8 @@ export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reco
 
 export type ErrorCode =
   | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
-  | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal';
+  | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
+  | 'no-webgl';
 
 /** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
 export class PointweaveError extends Error {
