@@ -40,12 +40,13 @@ export class PointWeaveElement extends Reflecting {
   #seen = false;
   #paused = false;
   #scheduled = false;
-  #resizes = globalThis.ResizeObserver && new ResizeObserver(([entry]) => this.#resized(entry));
+  #size = { width: 0, height: 0, ratio: 1 };
+  #resizes = new ResizeObserver(([entry]) => this.#resized(entry));
 
   constructor() {
     super();
     const { canvas, cancel, retry, reset, pause, fullscreen, choices, image, poster } = this.#parts;
-    cancel.addEventListener('click', () => this.abort());
+    cancel.addEventListener('click', () => (this.abort(), retry.focus()));
     retry.addEventListener('click', () => this.#retry());
     reset.addEventListener('click', () => this.resetCamera());
     pause.addEventListener('click', () => this.#pause());
@@ -246,7 +247,6 @@ export class PointWeaveElement extends Reflecting {
       if (this.#attached) this.#picture.attach();
       this.#picture.see(this.#seen);
       this.#dress();
-      this.#observe();
     }
     return this.#picture;
   }
@@ -355,7 +355,9 @@ export class PointWeaveElement extends Reflecting {
     const { controls, autoRotate } = this;
     const turns = autoRotate && !calm().matches;
     const view = this.#source?.kind === 'glb' ? this.#best() : this.view;
-    this.#panels.showToolbar({ controls, turns, paused: this.#paused, views: this.#views, view }, PointWeaveElement.words);
+    const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
+    this.#panels.showToolbar(state, PointWeaveElement.words);
+    this.#picture?.resize(this.#size, controls);
     this.#picture?.orbit.enable(controls);
     this.#picture?.orbit.turnSlowly(turns && !this.#paused);
   };
@@ -400,7 +402,7 @@ export class PointWeaveElement extends Reflecting {
     this.#speech.atRest(() => PointWeaveElement.words.pose(orbit.pose));
   }
 
-  /** The size is told once at the start, too. */
+  /** The size is told once at the start, and again when the window goes to a screen of other pixels. */
   #observe() {
     const { canvas } = this.#parts;
     this.#resizes.disconnect();
@@ -412,13 +414,10 @@ export class PointWeaveElement extends Reflecting {
   }
 
   /** @param {ResizeObserverEntry} entry */
-  #resized({ contentRect, devicePixelContentBoxSize }) {
-    const device = devicePixelContentBoxSize?.[0];
+  #resized({ contentRect: { width, height } }) {
     const ratio = Math.min(devicePixelRatio, FINEST);
-    const scale = ratio / devicePixelRatio;
-    const width = Math.round((device?.inlineSize ?? contentRect.width * devicePixelRatio) * scale);
-    const height = Math.round((device?.blockSize ?? contentRect.height * devicePixelRatio) * scale);
-    this.#picture?.resize({ width, height, ratio }, this.controls || this.autoRotate);
+    this.#size = { width: Math.round(width * ratio), height: Math.round(height * ratio), ratio };
+    this.#picture?.resize(this.#size, this.controls);
   }
 
   /**

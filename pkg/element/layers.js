@@ -19,7 +19,7 @@ import { meshMaterial, pointMaterial } from './materials.js';
 /** Points wider than their spacing close the surface; narrower ones can be told apart, which needs the far side out of the way. */
 const COVER = { none: 1.8, unoriented: 1.6, oriented: 0.95 };
 /** However sparse the scan, its points stay points: a share of the diagonal. */
-const LARGEST = 0.012;
+const LARGEST = 0.02;
 
 /**
  * @param {Drawable} source

@@ -68,10 +68,13 @@ export class Panels {
     if (share > 0) this.#parts.bar.value = share;
   }
 
+  /** The focus does not get lost with the button that had it. */
   end() {
+    const { canvas, cancel, progress, toolbar } = this.#parts;
     clearTimeout(this.#timer);
-    this.#parts.progress.hidden = true;
-    this.#parts.toolbar.classList.remove('busy');
+    if (cancel.matches(':focus')) canvas.focus();
+    progress.hidden = true;
+    toolbar.classList.remove('busy');
   }
 
   /** @param {string} title @param {string} [text] */
@@ -87,10 +90,14 @@ export class Panels {
     this.#parts.error.hidden = true;
   }
 
-  /** @param {{ controls: boolean, turns: boolean, paused: boolean, views: View[], view: View }} state @param {Words} words */
-  showToolbar({ controls, turns, paused, views, view }, words) {
+  /**
+   * @param {{ present: boolean, controls: boolean, turns: boolean, paused: boolean, views: View[], view: View }} state present: there is something to handle
+   * @param {Words} words
+   */
+  showToolbar({ present, controls, turns, paused, views, view }, words) {
     const parts = this.#parts;
-    parts.toolbar.hidden = !controls && !turns;
+    parts.toolbar.hidden = !present || (!controls && !turns);
+    parts.toolbar.classList.toggle('bare', !controls);
     parts.views.hidden = !controls || views.length < 2;
     for (const choice of parts.choices) {
       choice.label.hidden = !views.includes(choice.view);

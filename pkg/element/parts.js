@@ -40,7 +40,7 @@ export function buildParts(root) {
   const legend = make('legend', {});
   const choices = VIEWS.map((view) => choice(view));
   const views = make('fieldset', { class: 'views', part: 'views' }, legend, ...choices.map(({ label }) => label));
-  const reset = make('button', { class: 'button', part: 'button reset', type: 'button' }, icon('reset'));
+  const reset = make('button', { class: 'button reset', part: 'button reset', type: 'button' }, icon('reset'));
   const pause = make('button', { class: 'button', part: 'button pause', type: 'button' }, icon('pause'));
   const fullscreen = make('button', { class: 'button fullscreen', part: 'button fullscreen', type: 'button' }, icon('fullscreen'));
   const tools = make('div', { class: 'tools', part: 'tools' }, pause, reset, fullscreen);

@@ -166,6 +166,7 @@ const CSS = /* css */ `
   }
 
   .error {
+    z-index: 1;
     inset-block: 0;
     block-size: fit-content;
     max-block-size: calc(100% - 24px);
@@ -204,6 +205,14 @@ const CSS = /* css */ `
     gap: 6px;
     padding-inline: 8px;
     pointer-events: none;
+  }
+
+  :host(:fullscreen) {
+    border-radius: 0;
+  }
+
+  .toolbar.bare {
+    justify-content: flex-end;
   }
 
   .toolbar.busy {
@@ -309,15 +318,23 @@ const CSS = /* css */ `
     }
   }
 
-  @container (max-width: 300px) {
+  @container (max-width: 290px) {
     .toolbar {
       gap: 3px;
       padding-inline: 3px;
     }
 
     .views span {
-      padding-inline: 6px;
-      font-size: 0.8em;
+      padding-inline: 5px;
+      font-size: 0.78em;
+    }
+
+    .reset {
+      display: none;
+    }
+
+    .tools {
+      padding: 0;
     }
   }
 
