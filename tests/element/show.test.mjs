@@ -3,11 +3,10 @@
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
-import { test } from 'node:test';
 import { resolve } from 'node:path';
 import { decodePng, difference, expectedSilhouette, meanColor, overlap, silhouette as silhouetteWithin } from '../page/pictures.mjs';
 import { ball, boxScan, duckScan, glb } from './files.mjs';
-import { startSite } from './site.mjs';
+import { startSite, test } from './site.mjs';
 
 const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(import.meta.dirname, '../../../shared');
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
-import { after } from 'node:test';
+import { after, test as nodeTest } from 'node:test';
 import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
@@ -28,8 +28,11 @@ const PICTURE_ONLY = `point-weave { border-radius: 0 !important }
 /** Where pictures are kept for people to look at, when this is set. */
 const PICTURES = process.env.POINTWEAVE_PICTURES;
 
-/** Long enough for a slow machine. */
-export const PATIENCE = 30_000;
+/** Long enough for a slow machine: for one thing to wait for, and for one test. */
+const PATIENCE = 60_000;
+
+/** @param {string} name @param {(t: import('node:test').TestContext) => Promise<void>} run */
+export const test = (name, run) => nodeTest(name, { timeout: 2 * PATIENCE }, run);
 
 /** A browser and a server, for a file of tests to have at its top; both end with it. */
 export async function startSite() {
@@ -165,6 +168,18 @@ class Opened {
   async set(properties, selector = 'point-weave') {
     await this.element(selector).evaluate((element, values) => Object.assign(element, values), properties);
     await this.drawn();
+  }
+
+  /** Does something in the page the moment a stage is heard of, and waits until it is done. */
+  at(stage, act) {
+    return this.page.evaluate(([name, source]) => new Promise((resolve) => {
+      const hear = (event) => {
+        if (event.detail.stage !== name) return;
+        document.removeEventListener('progress', hear, true);
+        resolve((0, eval)(source)(event.target));
+      };
+      document.addEventListener('progress', hear, true);
+    }), [stage, `(${act})`]);
   }
 
   /** Waits for an event, and gives all so far. */
