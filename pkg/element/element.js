@@ -353,7 +353,7 @@ export class PointWeaveElement extends Reflecting {
   /** Brings what can be handled in line with the attributes. */
   #dress = () => {
     const { controls, autoRotate } = this;
-    const turns = autoRotate && !calm().matches;
+    const turns = autoRotate && !calm().wanted;
     const view = this.#source?.kind === 'glb' ? this.#best() : this.view;
     const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
@@ -375,7 +375,7 @@ export class PointWeaveElement extends Reflecting {
   }
 
   #pause() {
-    if (!this.autoRotate || calm().matches) return;
+    if (!this.autoRotate || calm().wanted) return;
     this.#paused = !this.#paused;
     this.#dress();
   }

@@ -102,7 +102,7 @@ export class Orbit {
   }
 
   get turning() {
-    return this.#turning && !calm().matches;
+    return this.#turning && !calm().wanted;
   }
 
   /** Takes something new to look at. @param {Float32Array} points a few of it @param {Exclude<Up, 'auto'>} up */
@@ -123,7 +123,7 @@ export class Orbit {
   home({ animated = true } = {}) {
     const to = this.#firstLook();
     this.#flight = null;
-    if (!animated || calm().matches) return this.#place(to, new Vector3());
+    if (!animated || calm().wanted) return this.#place(to, new Vector3());
     this.#rest();
     const from = this.#spherical();
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI)); // the short way
@@ -171,7 +171,7 @@ export class Orbit {
     if (this.#flight) this.#fly(this.#flight);
     else if (this.turning) this.#drift(passed);
     if (this.#controls) {
-      this.#controls.enableDamping = !calm().matches;
+      this.#controls.enableDamping = !calm().wanted;
       this.#controls.update();
     }
     const distance = this.#camera.position.length();

@@ -229,7 +229,7 @@ const CSS = /* css */ `
     padding: 3px;
     border: 0;
     border-radius: 14px;
-    background: color-mix(in srgb, var(--card) 92%, transparent);
+    background: var(--card);
     box-shadow: 0 1px 2px rgb(20 30 35 / 8%), 0 4px 16px rgb(20 30 35 / 10%);
   }
 

@@ -38,10 +38,26 @@ export function viewport() {
   return (watches ??= { near: new Watch(NEAR), seen: new Watch() });
 }
 
-/** @type {MediaQueryList | undefined} */
-let reduced;
+/**
+ * Whether the person has asked for less motion. The browser is asked once and then listened to: one that is asked in every
+ * frame has been seen to swallow the event.
+ */
+class Calm extends EventTarget {
+  #query = matchMedia('(prefers-reduced-motion: reduce)');
+  wanted = this.#query.matches;
 
-/** Whether the person has asked for less motion; an object that says when that changes. */
+  constructor() {
+    super();
+    this.#query.addEventListener('change', ({ matches }) => {
+      this.wanted = matches;
+      this.dispatchEvent(new Event('change'));
+    });
+  }
+}
+
+/** @type {Calm | undefined} */
+let shared;
+
 export function calm() {
-  return (reduced ??= matchMedia('(prefers-reduced-motion: reduce)'));
+  return (shared ??= new Calm());
 }
