@@ -131,7 +131,17 @@ export class Orbit {
     this.#changed();
   }
 
-  /** The picture has another shape now: fits again, if nobody has moved since. @param {() => void} reshape */
+  /** There is more to look at. @param {Float32Array} points a few of it */
+  widen(points) {
+    this.keepFitted(() => {
+      const both = new Float32Array(this.#outline.length + points.length);
+      both.set(this.#outline);
+      both.set(points, this.#outline.length);
+      this.#outline = both;
+    });
+  }
+
+  /** The picture or what is in it has another shape now: fits again, if nobody has moved since. @param {() => void} reshape */
   keepFitted(reshape) {
     const before = this.#firstLook().radius;
     reshape();

@@ -115,7 +115,9 @@ export class Picture {
     const frame = /** @type {Frame} */ (this.#frame);
     this.forgetComputed();
     this.#add('reduced', [cloudLayer(cloud, frame, mesh ? 'oriented' : 'unoriented')]);
-    if (mesh) this.#add('mesh', [meshLayer(mesh, frame)]);
+    if (!mesh) return;
+    this.#add('mesh', [meshLayer(mesh, frame)]);
+    this.#orbit.widen(thinned(toFrame(mesh, frame))); // a surface may reach further than its points
   }
 
   /** What was computed is no longer so. */
@@ -178,7 +180,7 @@ export class Picture {
    * @param {boolean} toolbar whether the lower edge is taken
    */
   resize({ width, height, ratio }, toolbar) {
-    const inset = toolbar ? Math.min(TOOLBAR * ratio, height / 3) : 0;
+    const inset = toolbar ? Math.min(TOOLBAR * ratio, height / 2.5) : 0;
     if (width === this.width && height === this.height && inset === this.#inset) return;
     this.#inset = inset;
     if (width !== this.width || height !== this.height) {

@@ -94,6 +94,11 @@ class Site {
       <script type="importmap" nonce="map">${JSON.stringify({ imports })}</script>
       ${define ? '<script type="module" src="/pointweave/element.js"></script>' : ''}</head><body><main><h1>Objects</h1>${body}</main></body></html>`;
     this.put(path, html, strict ? { 'Content-Security-Policy': STRICT } : {});
+    return this.visit(path, { prepare, ...context });
+  }
+
+  /** Opens a page that is there already. */
+  async visit(path, { prepare, ...context } = {}) {
     const page = await (await this.#browser.newContext({ viewport: { width: 800, height: 600 }, reducedMotion: 'reduce', ...context })).newPage();
     await page.addInitScript(watch);
     const opened = new Opened(page, this.address);
