@@ -44,7 +44,7 @@ export interface AbortDetail {
 /** None of them bubbles. */
 export interface PointWeaveEventMap {
   progress: CustomEvent<ProgressDetail>;
-  /** The view asked for is shown: after `src`, `ratio`, `count` or `view` has asked for work, and once more when put back. */
+  /** The view asked for is shown, after `src`, `ratio`, `count` or `view` has asked for work. */
   load: CustomEvent<LoadDetail>;
   error: CustomEvent<ErrorDetail>;
   /** The job under way was stopped; nothing of it will be shown. */

@@ -7,10 +7,10 @@ import { DataTexture, LinearFilter, SRGBColorSpace } from 'three';
 const SIZE = 256;
 
 /** Directions in eye space (x right, y up, z to the viewer) and how each light acts. */
-const KEY = { towards: unit([-0.45, 0.75, 0.55]), color: [1.0, 0.96, 0.9], strength: 0.66 };
+const KEY = { towards: unit([-0.45, 0.75, 0.55]), color: [1.0, 0.96, 0.9], strength: 0.6 };
 const FILL = { towards: unit([0.85, 0.05, 0.5]), color: [0.72, 0.82, 1.0], strength: 0.12 };
 const SKY = [0.3, 0.32, 0.35];
-const GROUND = [0.15, 0.13, 0.115];
+const GROUND = [0.23, 0.21, 0.195];
 const RIM = { color: [0.85, 0.93, 1.0], strength: 0.2 };
 const GLOSS = { exponent: 40, strength: 0.1 };
 
@@ -47,7 +47,7 @@ function sphereNormal(column, row) {
 /** Linear colour of the lit sphere where its normal is `n`. @param {number[]} n */
 function shade(n) {
   const sky = 0.5 + 0.5 * n[1];
-  const key = wrapped(dot(n, KEY.towards), 0.12) * KEY.strength;
+  const key = wrapped(dot(n, KEY.towards), 0.25) * KEY.strength;
   const fill = wrapped(dot(n, FILL.towards), 0.4) * FILL.strength;
   const rim = (1 - n[2]) ** 3 * (0.35 + 0.65 * sky) * RIM.strength;
   const half = unit([KEY.towards[0], KEY.towards[1], KEY.towards[2] + 1]);

@@ -51,15 +51,11 @@ export class Panels {
 
   /** A job has begun. */
   begin() {
-    const { bar, progress, progressText, toolbar } = this.#parts;
+    const { bar, progress } = this.#parts;
     this.end();
     this.hideError();
     bar.removeAttribute('value');
-    progressText.textContent = '';
-    this.#timer = window.setTimeout(() => {
-      progress.hidden = false;
-      toolbar.classList.add('busy');
-    }, PATIENCE_MS);
+    this.#timer = window.setTimeout(() => (progress.hidden = false), PATIENCE_MS);
   }
 
   /** @param {string} words @param {number} share */
@@ -70,11 +66,10 @@ export class Panels {
 
   /** The focus does not get lost with the button that had it. */
   end() {
-    const { canvas, cancel, progress, toolbar } = this.#parts;
+    const { canvas, cancel, progress } = this.#parts;
     clearTimeout(this.#timer);
     if (cancel.matches(':focus')) canvas.focus();
     progress.hidden = true;
-    toolbar.classList.remove('busy');
   }
 
   /** @param {string} title @param {string} [text] */
@@ -97,7 +92,7 @@ export class Panels {
   showToolbar({ present, controls, turns, paused, views, view }, words) {
     const parts = this.#parts;
     parts.toolbar.hidden = !present || (!controls && !turns);
-    parts.toolbar.classList.toggle('bare', !controls);
+    for (const part of [parts.toolbar, parts.progress]) part.classList.toggle('bare', !controls);
     parts.views.hidden = !controls || views.length < 2;
     for (const choice of parts.choices) {
       choice.label.hidden = !views.includes(choice.view);

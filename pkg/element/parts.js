@@ -25,8 +25,8 @@ export function buildParts(root) {
   const image = make('img', { part: 'poster-image', alt: '', decoding: 'async', hidden: '' });
   const poster = make('div', { class: 'poster', part: 'poster' }, slot('poster', image));
 
-  const progressText = make('span', { class: 'progress-text', part: 'progress-text' });
-  const bar = make('progress', { part: 'progress-bar', max: '1' });
+  const progressText = make('span', { id: 'stage', class: 'progress-text', part: 'progress-text' });
+  const bar = make('progress', { part: 'progress-bar', max: '1', 'aria-labelledby': 'stage' });
   const cancel = make('button', { class: 'button cancel', part: 'button cancel', type: 'button' });
   const progressCard = make('div', { class: 'progress-card', part: 'progress-card' }, progressText, cancel, bar);
   const progress = make('div', { class: 'progress', part: 'progress', hidden: '' }, slot('progress', progressCard));

@@ -27,7 +27,7 @@ const CSS = /* css */ `
     :host {
       background: var(--point-weave-background, linear-gradient(light-dark(#f2f4f3, #2b3136), light-dark(#d9dfde, #15181b)));
       --ink: var(--point-weave-color, light-dark(#1b2329, #ebe8e1));
-      --card: var(--point-weave-card, light-dark(#fdfcf9, #1b1f23));
+      --card: var(--point-weave-card, light-dark(#fdfcf9, #272d32));
       --accent: var(--point-weave-accent, light-dark(#0b6e69, #62cbbf));
       --on-accent: var(--point-weave-on-accent, light-dark(#ffffff, #06221f));
       --warn: var(--point-weave-warn, light-dark(#a43c17, #f0a183));
@@ -114,7 +114,7 @@ const CSS = /* css */ `
   .progress, .error {
     position: absolute;
     inset-inline: 12px;
-    inset-block-end: 12px;
+    inset-block-start: 12px;
     margin-inline: auto;
     max-inline-size: 420px;
     border-radius: 14px;
@@ -165,6 +165,30 @@ const CSS = /* css */ `
     grid-row: 1 / span 2;
   }
 
+  /* Without controls: a line along the lower edge. */
+  .progress.bare {
+    inset: auto 0 0;
+    max-inline-size: none;
+    border-radius: 0;
+    background: none;
+    box-shadow: none;
+  }
+
+  .bare .progress-card {
+    display: block;
+    padding: 0;
+  }
+
+  .bare .progress-text, .bare .cancel {
+    display: none;
+  }
+
+  .bare progress {
+    display: block;
+    block-size: 4px;
+    border-radius: 0;
+  }
+
   .error {
     z-index: 1;
     inset-block: 0;
@@ -213,10 +237,6 @@ const CSS = /* css */ `
 
   .toolbar.bare {
     justify-content: flex-end;
-  }
-
-  .toolbar.busy {
-    visibility: hidden;
   }
 
   .toolbar > *, ::slotted([slot='toolbar']) {
@@ -351,6 +371,16 @@ const CSS = /* css */ `
 
     .views span, .button {
       transition: background-color 0.15s, color 0.15s;
+    }
+
+    progress:indeterminate {
+      animation: waiting 0.9s ease-in-out infinite alternate;
+    }
+  }
+
+  @keyframes waiting {
+    to {
+      background: color-mix(in srgb, var(--accent) 60%, transparent);
     }
   }
 

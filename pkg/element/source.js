@@ -98,7 +98,12 @@ export async function openSource(src, view, { signal, onProgress, threads, wasmU
   onProgress('read', FETCHED[kind]);
   const engine = await sharedEngine(threads, wasmUrl);
   signal.throwIfAborted();
-  const cloud = await engine.read(bytes, { name: nameOf(src), signal, transfer: true });
+  const cloud = await engine.read(bytes, {
+    name: nameOf(src),
+    signal,
+    transfer: true,
+    onProgress: ({ overall }) => onProgress('read', FETCHED[kind] + (READ[kind] - FETCHED[kind]) * overall),
+  });
   return new Scan(cloud, READ[kind]);
 }
 

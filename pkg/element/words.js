@@ -35,6 +35,7 @@ export const WORDS = {
     'bad-file': 'This file breaks the rules of its format',
     'empty-cloud': 'There are no points in this file',
     'too-few-points': 'These are too few points for a surface',
+    'non-finite': 'A point of this scan is nowhere',
     degenerate: 'These points span no surface',
     'out-of-memory': 'There is not enough memory for this scan',
     'no-webgl': '3D pictures need WebGL 2',

@@ -13,6 +13,7 @@ const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.
 const site = await startSite();
 site.put('/duck.ply', (await duckScan()).bytes);
 site.put('/box.xyz', boxScan());
+site.put('/many.ply', (await duckScan({ count: 60_000 })).bytes);
 site.put('/violet.svg', poster('#8020c0'));
 site.put('/ball.glb', await glb([{ ...ball(16), color: [200, 10, 10] }]));
 /** Two balls, so that one sees it turn. */
@@ -169,6 +170,33 @@ test('auto-rotate turns it, the button and the space bar pause it, less motion s
   assert.equal(await page.getByRole('button', { name: 'Pause turning' }).count(), 1, 'what moves by itself can be stopped');
   await shown.set({ autoRotate: false });
   await rests();
+});
+
+test('full screen and back', async () => {
+  const shown = await site.open('<point-weave src="/ball.glb" alt="A red ball" controls></point-weave>', { style: LARGE });
+  await shown.loaded();
+  const { page } = shown;
+  const full = () => page.evaluate(() => document.fullscreenElement?.localName);
+  const size = () => shown.element().evaluate(({ shadowRoot }) => [shadowRoot.querySelector('canvas').width, shadowRoot.querySelector('canvas').height]);
+  await page.getByRole('button', { name: 'Full screen' }).click();
+  await page.waitForFunction(() => document.fullscreenElement?.shadowRoot.querySelector('canvas').width > 600);
+  assert.deepEqual([await full(), await size()], ['point-weave', [800, 600]]);
+  await page.getByRole('button', { name: 'Full screen' }).click();
+  await page.waitForFunction(() => document.querySelector('point-weave').shadowRoot.querySelector('canvas').width === 600);
+  assert.equal(await full(), undefined);
+});
+
+test('the focus stays where it is while a chosen view is computed', async () => {
+  const shown = await site.open('<point-weave src="/many.ply" alt="Something" view="points" controls></point-weave>', { style: LARGE });
+  await shown.loaded();
+  const { page } = shown;
+  await page.getByRole('radio', { name: 'Reduced' }).focus();
+  await page.keyboard.press('ArrowRight');
+  await page.getByRole('button', { name: 'Cancel' }).waitFor();
+  assert.ok(await page.getByRole('radio', { name: 'Mesh' }).evaluate((radio) => radio.matches(':focus') && radio.checkVisibility()));
+  await page.getByRole('button', { name: 'Cancel' }).focus();
+  await shown.loaded();
+  assert.ok(await page.getByRole('application').evaluate((canvas) => canvas.matches(':focus')), 'not lost with the button');
 });
 
 test('axe finds nothing, in any state, light and dark', async () => {

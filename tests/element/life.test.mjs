@@ -70,7 +70,7 @@ test('the poster comes first and goes when the view is there', async () => {
     prepare: async (page) => (release = await hold(page, '**/green.glb')),
   });
   await shown.page.waitForFunction(() => document.querySelector('point-weave').shadowRoot.querySelector('img').complete);
-  await shown.element().getByText('Loading', { exact: true }).waitFor();
+  await shown.page.getByRole('progressbar', { name: 'Loading' }).waitFor();
   await shown.keep('poster');
   const { data, channels, width, height } = decodePng(await shown.picture());
   const middle = channels * (Math.floor(height / 2) * width + Math.floor(width / 2));
@@ -220,6 +220,32 @@ test('what is removed and forgotten is collected', async () => {
     gc();
     return window.refs.every((ref) => !ref.deref());
   });
+});
+
+test('what cannot be seen is not drawn', async () => {
+  const shown = await site.open('<point-weave src="/red.glb" alt="A ball" auto-rotate></point-weave><div style="height: 3000px"></div>', { reducedMotion: 'no-preference' });
+  await shown.loaded();
+  const copies = () => shown.page.evaluate(async () => {
+    window.copies ??= 0;
+    if (!window.copies) {
+      const { drawImage } = CanvasRenderingContext2D.prototype;
+      CanvasRenderingContext2D.prototype.drawImage = function (...rest) {
+        window.copies++;
+        return drawImage.apply(this, rest);
+      };
+    }
+    const before = window.copies;
+    for (let k = 0; k < 20; k++) await new Promise(requestAnimationFrame);
+    return window.copies - before;
+  });
+  assert.ok(await copies() > 0, 'it turns');
+  await moved(shown, 2000);
+  await shown.drawn();
+  await shown.drawn();
+  assert.equal(await copies(), 0);
+  await moved(shown, -2000);
+  await shown.drawn();
+  assert.ok(await copies() > 0, 'and turns on');
 });
 
 test('thirty on one page share one context; each shows its own', async () => {

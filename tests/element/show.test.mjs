@@ -77,6 +77,9 @@ test('an XYZ file, which stands as it is told to', async () => {
   await shown.loaded();
   const land = silhouette(await shown.picture()).box;
   assert.ok(land.width > 1.8 * land.height, 'what is wide and flat lies down');
+  await shown.element().evaluate(async (element) => (element.src = URL.createObjectURL(await (await fetch('/tall.xyz')).blob())));
+  await shown.loaded();
+  assert.ok(silhouette(await shown.picture()).area > 1000, 'a file that a visitor has chosen');
 });
 
 test('a GLB is shown at once: no engine, no worker', async () => {
