@@ -187,6 +187,7 @@ const CSS = /* css */ `
     display: block;
     block-size: 4px;
     border-radius: 0;
+    background: color-mix(in srgb, var(--accent) 25%, var(--card));
   }
 
   .error {
@@ -380,7 +381,7 @@ const CSS = /* css */ `
 
   @keyframes waiting {
     to {
-      background: color-mix(in srgb, var(--accent) 60%, transparent);
+      background: color-mix(in srgb, var(--accent) 60%, var(--card));
     }
   }
 
