@@ -1,6 +1,6 @@
 /** The layers' colours, as the style sheet says them, whatever way they are written: names, oklch(), light-dark() … */
 
-/** Linear order: red, green, blue in sRGB, 0 to 1. @typedef {[number, number, number]} Rgb */
+/** Red, green and blue of sRGB, 0 to 1. @typedef {[number, number, number]} Rgb */
 /** @typedef {{ mesh: Rgb, points: Rgb, reduced: Rgb }} Colors */
 
 /** @type {CanvasRenderingContext2D | undefined} */

@@ -170,9 +170,10 @@ export class PointWeaveElement extends Reflecting {
     this.#schedule();
   }
 
-  /** @param {boolean} seen */
+  /** What was out of sight has not heard of new colours. @param {boolean} seen */
   #see(seen) {
     this.#seen = seen;
+    if (seen) this.#picture?.paintIn(layerColors(this.#parts.canvas));
     this.#picture?.see(seen);
   }
 

@@ -49,13 +49,13 @@ export function ball(rings = 24, radius = 1, [x, y, z] = [0, 0, 0]) {
 /**
  * A GLB of primitives with one colour each, at their vertices.
  * @param {{ positions: Float32Array, normals?: Float32Array, indices?: Uint32Array, color: number[] }[]} primitives color: linear, 0-255
- * @param {{ required?: string[], meshopt?: boolean }} [options] meshopt: compressed by EXT_meshopt_compression
+ * @param {{ required?: string[], meshopt?: boolean, at?: number[] }} [options] meshopt: compressed by EXT_meshopt_compression
  */
-export async function glb(primitives, { required = [], meshopt = false } = {}) {
+export async function glb(primitives, { required = [], meshopt = false, at = [0, 0, 0] } = {}) {
   await MeshoptEncoder.ready;
   const parts = [];
   const json = {
-    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, translation: at }],
     meshes: [{ primitives: [] }], accessors: [], bufferViews: [], buffers: [{ byteLength: 0 }],
   };
   let length = 0;

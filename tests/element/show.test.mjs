@@ -118,6 +118,29 @@ test('a GLB of points and a mesh has two views; compressed ones are read', async
   assert.deepEqual(shown.asked.filter((path) => /\.wasm|worker/.test(path)), []);
 });
 
+test('a GLB far from the origin is as sharp as one that is near', async () => {
+  const two = [{ ...ball(12, 1, [-1.2, 0, 0]), color: [200, 10, 10] }, { ...ball(12, 0.6, [1.2, 0, 0]), color: [10, 10, 200] }];
+  site.put('/near.glb', await glb(two));
+  site.put('/far.glb', await glb(two, { at: [450_000.25, 5_200_000.5, 1200] }));
+  const shown = await site.open('<point-weave src="/near.glb" alt="Two balls"></point-weave>');
+  await shown.loaded();
+  const near = await shown.picture();
+  await shown.set({ src: '/far.glb' });
+  await shown.loaded();
+  const share = difference(near, await shown.picture());
+  assert.ok(share < 0.001, `${share} of the pixels differ`);
+});
+
+test('threads, where the page is isolated; one engine for all that want as many', async () => {
+  const headers = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+  const tags = ['2', '2', '1'].map((threads, i) => `<point-weave src="/duck.ply?${i}" threads="${threads}" view="reduced" alt="A duck"></point-weave>`);
+  const shown = await site.open(tags.join(''), { headers });
+  await shown.loaded();
+  const loads = (await shown.events()).filter(({ type }) => type === 'load').sort((a, b) => a.src.localeCompare(b.src));
+  assert.deepEqual(loads.map(({ report: { build, threads } }) => [build, threads]), [['threads', 2], ['threads', 2], ['single', 1]]);
+  assert.equal(shown.workers, 1 + 2 + 1, 'one that computes, two that lend their threads, and one alone');
+});
+
 test('a textured GLB keeps its picture', async (t) => {
   const file = resolve(SHARED, 'data/meshes/Duck.glb');
   if (!existsSync(file)) return t.diagnostic(`not tested: ${file} is missing (set POINTWEAVE_SHARED to the folder that holds data/)`);

@@ -21,6 +21,9 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'applic
 const IMPORTS = { three: '/node_modules/three/build/three.module.js', 'three/addons/': '/node_modules/three/examples/jsm/' };
 const STRICT = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-map'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src 'self' data:";
 
+/** An isolated page takes workers only from those who say this, too. */
+const WORKERS = { 'Cross-Origin-Embedder-Policy': 'require-corp' };
+
 /** What lies over the picture, hidden for pixel tests; and no round corners. */
 const PICTURE_ONLY = `point-weave { border-radius: 0 !important }
   point-weave::part(toolbar), point-weave::part(progress), point-weave::part(error) { visibility: hidden !important }`;
@@ -53,7 +56,8 @@ export async function startSite() {
 async function answer(request, response, files) {
   const { pathname } = new URL(request.url, 'http://localhost');
   const { body, headers } = files.get(pathname) ?? { body: await fileBody(pathname) };
-  response.writeHead(body ? 200 : 404, { 'Content-Type': TYPES[extname(pathname)] ?? 'application/octet-stream', ...headers }).end(body ?? '');
+  const type = TYPES[extname(pathname)] ?? 'application/octet-stream';
+  response.writeHead(body ? 200 : 404, { 'Content-Type': type, ...WORKERS, ...headers }).end(body ?? '');
 }
 
 /** @param {string} pathname */
@@ -86,14 +90,14 @@ class Site {
    * @param {string} body
    * @param {object} [options] strict: a content security policy; prepare: before the page loads; define: false for no element
    */
-  async open(body, { strict = false, prepare, define = true, imports = IMPORTS, style = '', attributes = '', ...context } = {}) {
+  async open(body, { strict = false, prepare, define = true, imports = IMPORTS, style = '', headers = {}, ...context } = {}) {
     const path = `/${++this.#pages}.html`;
     const css = this.put(`/${this.#pages}.css`, `body { margin: 0; font: 16px sans-serif; background: #fff } point-weave { display: block } ${style}`, { 'Content-Type': 'text/css' });
-    const html = `<!doctype html><html lang="en" ${attributes}><head><title>Objects</title><link rel="icon" href="data:,"><link rel="stylesheet" href="${css}">
+    const html = `<!doctype html><html lang="en"><head><title>Objects</title><link rel="icon" href="data:,"><link rel="stylesheet" href="${css}">
       <meta name="viewport" content="width=device-width, initial-scale=1">
       <script type="importmap" nonce="map">${JSON.stringify({ imports })}</script>
       ${define ? '<script type="module" src="/pointweave/element.js"></script>' : ''}</head><body><main><h1>Objects</h1>${body}</main></body></html>`;
-    this.put(path, html, strict ? { 'Content-Security-Policy': STRICT } : {});
+    this.put(path, html, { ...headers, ...(strict && { 'Content-Security-Policy': STRICT }) });
     return this.visit(path, { prepare, ...context });
   }
 
@@ -149,6 +153,9 @@ class Opened {
     this.faults = [];
     /** Paths that were asked for. */
     this.asked = [];
+    /** How many were started. */
+    this.workers = 0;
+    page.on('worker', () => this.workers++);
     page.on('pageerror', (error) => this.faults.push(String(error)));
     page.on('console', (message) => message.type() === 'error' && !/Failed to load resource/.test(message.text()) && this.faults.push(message.text()));
     page.on('request', (request) => this.asked.push(request.url().replace(address, '')));
