@@ -98,10 +98,15 @@ export class PointWeaveElement extends Reflecting {
     switch (name) {
       case 'src':
         this.#forget();
+        this.#schedule();
         break;
       case 'ratio':
       case 'count':
         this.#retarget();
+        this.#schedule();
+        break;
+      case 'view':
+        this.#schedule();
         break;
       case 'poster':
         if (this.#near) this.#panels.setPoster(this.poster);
@@ -124,7 +129,6 @@ export class PointWeaveElement extends Reflecting {
         if (this.loading === 'eager' && this.#attached) this.#come();
         break;
     }
-    this.#schedule();
   }
 
   /** Whether the view that is asked for is shown. */
@@ -225,6 +229,7 @@ export class PointWeaveElement extends Reflecting {
         if (source.reduced) picture.addComputed(source.reduced, source.mesh);
       }
       if (job.share < 1) this.#progress(job, job.stage, 1);
+      signal.throwIfAborted(); // by who heard of that
       this.#job = undefined;
       this.#finish(src, source, picture);
     } catch (error) {

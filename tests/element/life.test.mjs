@@ -96,6 +96,20 @@ test('another src: the old job ends with an abort, and nothing of it is ever sho
   assert.deepEqual(told, [['abort', '/red.glb', 'src'], ['load', '/green.glb', undefined]]);
 });
 
+test('another src at the last moment: nothing of the old one either', async () => {
+  const shown = await site.open('<point-weave alt="A ball"></point-weave>');
+  await shown.element().evaluate((element) => {
+    element.addEventListener('progress', ({ detail }) => {
+      if (detail.overall === 1 && detail.src === '/red.glb') element.src = '/green.glb';
+    });
+    element.src = '/red.glb';
+  });
+  await shown.loaded();
+  assert.equal(color(await shown.picture()), 'green');
+  const told = (await shown.events()).filter(({ type }) => type !== 'progress').map(({ type, src }) => [type, src]);
+  assert.deepEqual(told, [['abort', '/red.glb'], ['load', '/green.glb']]);
+});
+
 test('another src while a scan is computed, and many in one go', async () => {
   const shown = await site.open('<point-weave alt="Something" threads="1"></point-weave>');
   const released = await hold(shown.page, '**/box.xyz');
@@ -148,6 +162,9 @@ test('Cancel stops the work, Try again does it', async () => {
   const retry = shown.page.getByRole('button', { name: 'Try again' });
   assert.ok(await retry.evaluate((button) => button.matches(':focus')), 'the focus is not lost');
   assert.match(await shown.page.getByRole('alert').innerText(), /Stopped/);
+  const { length } = await shown.events();
+  await shown.set({ alt: 'Something else', autoRotate: true, poster: '/violet.svg' });
+  assert.equal((await shown.events()).length, length, 'nothing starts it again that does not ask for work');
   await shown.set({ src: '/duck.ply' });
   await shown.loaded();
   assert.equal(await retry.isVisible(), false);
