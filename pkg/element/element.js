@@ -260,7 +260,6 @@ export class PointWeaveElement extends Reflecting {
   /** @param {string} src @param {Glb | Scan} source @param {Picture} picture */
   #finish(src, source, picture) {
     this.#panels.end();
-    this.#panels.showPoster(false);
     const view = this.#showBest();
     picture.paint();
     const result = source.kind === 'scan' ? source.of(view) : undefined;
@@ -287,9 +286,10 @@ export class PointWeaveElement extends Reflecting {
     if (job !== this.#job) return;
     job.share = Math.max(job.share, share);
     job.stage = stage;
-    const { words } = PointWeaveElement;
-    this.#panels.progress(words.stages[stage], job.share);
-    this.#speech.progress(words.progress(words.stages[stage], Math.round(100 * job.share)));
+    const { stages, progress } = PointWeaveElement.words;
+    const words = stages[stage] ?? stage;
+    this.#panels.progress(words, job.share);
+    this.#speech.progress(progress(words, Math.round(100 * job.share)));
     this.#send('progress', { src: job.src, stage, overall: job.share });
   }
 
@@ -338,7 +338,7 @@ export class PointWeaveElement extends Reflecting {
   #showBest() {
     const view = this.#best();
     this.#picture?.show(view);
-    if (!this.#panels.hasPoster) this.#panels.showPoster(false);
+    if (this.#loaded || !this.#panels.hasPoster) this.#panels.showPoster(false);
     this.#dress();
     return view;
   }

@@ -86,7 +86,8 @@ export class Panels {
   }
 
   /**
-   * @param {{ present: boolean, controls: boolean, turns: boolean, paused: boolean, views: View[], view: View }} state present: there is something to handle
+   * @param {{ present: boolean, controls: boolean, turns: boolean, paused: boolean, views: View[], view: View }} state
+   *   present: there is something to handle
    * @param {Words} words
    */
   showToolbar({ present, controls, turns, paused, views, view }, words) {

@@ -110,7 +110,11 @@ export class Picture {
     this.#orbit.frame(joined(objects.map((object) => placedPositions(object, OUTLINE / objects.length))), this.#upright());
   }
 
-  /** Adds what was computed: a reduced cloud, whose normals point outwards when it comes with a mesh. @param {Drawable} cloud @param {Drawable} [mesh] */
+  /**
+   * Adds what was computed.
+   * @param {Drawable} cloud reduced; its normals point outwards when it comes with a mesh
+   * @param {Drawable} [mesh]
+   */
   addComputed(cloud, mesh) {
     const frame = /** @type {Frame} */ (this.#frame);
     this.forgetComputed();
@@ -256,7 +260,7 @@ export class Picture {
 
 /** What an object holds on the GPU. three.js makes it anew should the object be drawn again. @param {import('three').Object3D} object */
 function free(object) {
-  const { geometry, material } = /** @type {{ geometry: import('three').BufferGeometry, material: import('three').MeshMatcapMaterial }} */ (/** @type {unknown} */ (object));
+  const { geometry, material } = /** @type {import('three').Mesh<import('three').BufferGeometry, import('three').MeshMatcapMaterial>} */ (object);
   geometry.dispose();
   material.map?.dispose();
   material.dispose();

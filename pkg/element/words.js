@@ -47,11 +47,14 @@ export const WORDS = {
   pose: describe,
 };
 
+/** From so many degrees up. @type {[number, string][]} */
+const HEIGHTS = [[75, ', from the top'], [15, ', from above'], [-15, ''], [-75, ', from below']];
+
 /** Where one looks from, an eighth of a turn at a time, then how high, then how near. @param {Pose} pose */
 function describe({ azimuth, elevation, zoom }) {
   const sides = ['the front', 'the front right', 'the right', 'the back right', 'the back', 'the back left', 'the left', 'the front left'];
   const side = sides[((Math.round(azimuth / 45) % 8) + 8) % 8];
-  const height = elevation > 75 ? ', from the top' : elevation > 15 ? ', from above' : elevation < -75 ? ', from the bottom' : elevation < -15 ? ', from below' : '';
+  const [, height] = HEIGHTS.find(([least]) => elevation > least) ?? [0, ', from the bottom'];
   return `Seen from ${side}${height}, zoom ${Math.round(100 * zoom)} per cent`;
 }
 

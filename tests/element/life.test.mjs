@@ -152,7 +152,7 @@ test('another count while computing starts over from the points', async () => {
 });
 
 test('Cancel stops the work, Try again does it', async () => {
-  const shown = await site.open('<point-weave src="/many.ply" alt="Something" controls></point-weave>', { style: 'point-weave { width: 600px }' });
+  const shown = await site.open('<point-weave src="/many.ply" poster="/violet.svg" alt="Something" controls></point-weave>', { style: 'point-weave { width: 600px }' });
   const cancel = shown.page.getByRole('button', { name: 'Cancel' });
   await cancel.waitFor();
   await shown.keep('progress');
@@ -163,8 +163,16 @@ test('Cancel stops the work, Try again does it', async () => {
   assert.ok(await retry.evaluate((button) => button.matches(':focus')), 'the focus is not lost');
   assert.match(await shown.page.getByRole('alert').innerText(), /Stopped/);
   const { length } = await shown.events();
-  await shown.set({ alt: 'Something else', autoRotate: true, poster: '/violet.svg' });
+  await shown.set({ alt: 'Something else', autoRotate: true });
   assert.equal((await shown.events()).length, length, 'nothing starts it again that does not ask for work');
+  await retry.click();
+  await shown.heard('load');
+  await shown.element().evaluate((element) => element.reload());
+  await cancel.click();
+  assert.equal(color(await shown.picture()), 'nothing', 'the poster lies over the points');
+  await shown.set({ view: 'points' });
+  await shown.loaded();
+  assert.notEqual(color(await shown.picture()), 'nothing', 'it makes way for them when they are asked for');
   await shown.set({ src: '/duck.ply' });
   await shown.loaded();
   assert.equal(await retry.isVisible(), false);
