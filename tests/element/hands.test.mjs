@@ -136,6 +136,26 @@ test('a pointer turns it; a wheel scrolls the page until one has taken hold of i
   assert.equal(await shown.element().evaluate(({ shadowRoot }) => getComputedStyle(shadowRoot.querySelector('canvas')).touchAction), 'pan-y');
 });
 
+test('a drag glides to rest, unless less motion is wanted', async () => {
+  for (const reducedMotion of ['no-preference', 'reduce']) {
+    const shown = await site.open('<point-weave src="/two.glb" alt="Two balls" controls></point-weave>', { reducedMotion, style: LARGE });
+    await shown.loaded();
+    const glided = shown.element().evaluate(({ shadowRoot }) => new Promise((resolve) => {
+      const canvas = shadowRoot.querySelector('canvas');
+      const frame = () => new Promise((drawn) => requestAnimationFrame(drawn));
+      canvas.addEventListener('pointerup', async () => {
+        await frame();
+        await frame(); // what the drag itself asked for is drawn
+        const before = canvas.toDataURL();
+        for (let k = 0; k < 10; k++) await frame();
+        resolve(canvas.toDataURL() !== before);
+      });
+    }));
+    await drag(shown, 120, 0);
+    assert.equal(await glided, reducedMotion === 'no-preference');
+  }
+});
+
 test('auto-rotate turns it, the button and the space bar pause it, less motion stops it', async () => {
   const shown = await site.open('<point-weave src="/two.glb" alt="Two balls" auto-rotate controls></point-weave>', { reducedMotion: 'no-preference', style: LARGE });
   await shown.loaded();

@@ -141,6 +141,20 @@ test('threads, where the page is isolated; one engine for all that want as many'
   assert.equal(shown.workers, 1 + 2 + 1, 'one that computes, two that lend their threads, and one alone');
 });
 
+test('wasm files elsewhere', async () => {
+  site.put('/elsewhere/single/pointweave_bg.wasm', await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)));
+  const shown = await site.open('<point-weave src="/duck.ply" view="points" alt="A duck"></point-weave>', {
+    define: false,
+    prepare: (page) => page.addInitScript(() => addEventListener('DOMContentLoaded', async () => {
+      const { PointWeaveElement } = await import('/pointweave/element/element.js');
+      PointWeaveElement.wasmUrl = '/elsewhere/';
+      await import('/pointweave/element.js');
+    })),
+  });
+  await shown.loaded();
+  assert.deepEqual(shown.asked.filter((path) => path.endsWith('.wasm')), ['/elsewhere/single/pointweave_bg.wasm']);
+});
+
 test('a textured GLB keeps its picture', async (t) => {
   const file = resolve(SHARED, 'data/meshes/Duck.glb');
   if (!existsSync(file)) return t.diagnostic(`not tested: ${file} is missing (set POINTWEAVE_SHARED to the folder that holds data/)`);
