@@ -165,6 +165,8 @@ function connect(worker) {
       new Promise((resolve, reject) => {
         asked = { resolve, reject, progress };
         worker.post(message, buffersOf(message));
+      }).finally(() => {
+        asked.progress = undefined; // an idle worker keeps nothing of its last caller
       }),
     /** Rejects the question under way. @param {unknown} error */
     fail(error) {

@@ -359,7 +359,7 @@ export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reco
 export type ErrorCode =
   | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
   | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
-  | 'bad-index' | 'needs-triangles' | 'missing-package';
+  | 'bad-index' | 'needs-triangles' | 'missing-package' | 'no-webgl';
 
 /** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
 export class PointweaveError extends Error {
