@@ -89,6 +89,7 @@ const RECONSTRUCT = {
   resolution: number(1e-4, 0.25, { or: 'auto', fallback: 'auto' }),
   sharp: flag(true),
   boundary: choice('auto', 'closed', 'open'),
+  distances: flag(false),
 };
 
 const READ = {

@@ -134,6 +134,8 @@ export interface ReconstructOptions {
   sharp?: boolean;
   /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
   boundary?: 'auto' | 'closed' | 'open';
+  /** Say of every input point and every vertex how far scan and mesh are apart there ({@link SurfaceMesh.distances}). Default `false`. */
+  distances?: boolean;
 }
 
 /** Distances as fractions. */
@@ -226,6 +228,13 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   origin?: [number, number, number];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
+  /** With `distances`, fractions: for a map of the error. */
+  distances?: {
+    /** One entry an input point, its distance to the mesh; NaN for an outlier that was dropped. */
+    points: Float32Array;
+    /** One entry a vertex: the mean over the points nearest to its triangles; NaN where the mesh spans a place without points. */
+    vertices: Float32Array;
+  };
   report: SurfaceReport;
 }
 

@@ -232,6 +232,8 @@ pub struct SurfaceParams {
     pub sharp: bool,
     /// Default: auto.
     pub boundary: Boundary,
+    /// Say of every input point and every vertex how far scan and mesh are apart there. Default `false`.
+    pub distances: bool,
 }
 
 impl Default for SurfaceParams {
@@ -246,6 +248,7 @@ impl Default for SurfaceParams {
             resolution: Resolution::Auto,
             sharp: true,
             boundary: Boundary::Auto,
+            distances: false,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::attach::attach;
 use crate::cells::{self, Sites};
 use crate::cloud::{Attribute, Cloud};
-use crate::distance::mesh_distance;
+use crate::distance::{mesh_distances, vertex_distances};
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
 use crate::features::Features;
@@ -44,8 +44,19 @@ pub struct Surface {
     pub attributes: Vec<Attribute>,
     /// The points that the surface was fitted to, with oriented normals.
     pub cloud: ReducedCloud,
+    /// Where they were asked for.
+    pub distances: Option<Distances>,
     /// Counts, distances, topology, times.
     pub report: SurfaceReport,
+}
+
+/// How far scan and mesh are apart, place by place, as fractions of the diagonal.
+#[derive(Debug, Clone)]
+pub struct Distances {
+    /// Of every input point, in the input's order, to the mesh; NaN for one that was dropped.
+    pub points: Vec<f32>,
+    /// At every vertex, the mean of the points that are nearest to its triangles; NaN where there are none.
+    pub vertices: Vec<f32>,
 }
 
 impl Surface {
@@ -224,7 +235,19 @@ pub fn reconstruct(
         normals[i as usize] = normal;
     }
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
-    let distance = mesh_distance(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let apart = mesh_distances(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
+    let distances = params.distances.then(|| {
+        let mut points = vec![f32::NAN; origin.given];
+        for (&i, apart) in tree.order.iter().zip(&apart) {
+            points[origin.callers(i) as usize] = apart.distance as f32;
+        }
+        Distances {
+            points,
+            vertices: vertex_distances(&apart, &mesh.triangles, mesh.vertices.len()),
+        }
+    });
+    drop(apart);
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
     let report = reduce_report((origin, features.noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
@@ -248,6 +271,7 @@ pub fn reconstruct(
         colors,
         attributes,
         cloud,
+        distances,
         report: surface_report,
     })
 }
@@ -390,6 +414,13 @@ impl Origin {
     /// How many points were dropped.
     fn dropped(&self) -> usize {
         self.kept.as_ref().map_or(0, |kept| self.given - kept.len())
+    }
+
+    /// The caller's index of a point of this cloud.
+    fn callers(&self, point: u32) -> u32 {
+        self.kept
+            .as_ref()
+            .map_or(point, |kept| kept[point as usize])
     }
 
     /// Indices of this cloud's points become the caller's.

@@ -8,7 +8,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::error::Error;
 use crate::formats::{self, Format, Positions, RawCloud, WriteOptions};
 use crate::params::{ReduceParams, SurfaceParams};
-use crate::pipeline::{self, ReducedCloud, Surface};
+use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::progress::{Progress, Stage};
 use crate::report::ReduceReport;
 use crate::samples::{self, Model};
@@ -286,9 +286,20 @@ fn surface_to_js(surface: &Surface, precision: Precision) -> JsResult {
         ),
         ("colors", colors_to_js(&surface.colors)),
         ("cloud", reduced_to_js(&surface.cloud, precision)?),
+        ("distances", distances_to_js(&surface.distances)?),
         ("report", to_js(&surface.report)?),
     ])?;
     attach(fields, &surface.attributes, cloud.origin)
+}
+
+fn distances_to_js(distances: &Option<Distances>) -> JsResult {
+    let Some(Distances { points, vertices }) = distances else {
+        return Ok(JsValue::UNDEFINED);
+    };
+    object([
+        ("points", Float32Array::from(&points[..]).into()),
+        ("vertices", Float32Array::from(&vertices[..]).into()),
+    ])
 }
 
 /// Points of the unit frame in the caller's, single or double precision as the input was.

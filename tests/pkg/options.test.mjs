@@ -158,6 +158,7 @@ test('Rust has the same ranges', async () => {
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
       ['orient', [[true, true], [1, false]]],
       ['sharp', [[false, true], ['no', false]]],
+      ['distances', [[true, true], [1, false]]],
     ],
   };
   for (const [call, options] of Object.entries(edges)) {
