@@ -98,7 +98,8 @@ pub const MOST_FILLED: f64 = 0.35;
 ///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
 ///   surface; components not closed by then stay open.
 ///
-/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 16 points.
+/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 16 points, nor a
+/// small piece that runs along a larger component within two spacings.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
@@ -128,7 +129,7 @@ pub fn extract<F: Implicit>(
     decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
-    drop_phantoms(&mut dual, points);
+    drop_phantoms(&mut dual, points, reach);
     let (filled, closed, open) = summarise(&dual);
     let (mut mesh, on_crease) = triangulate(dual);
     rims::smooth(&mut mesh);

@@ -6,7 +6,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::distance::{mesh_distances, vertex_distances};
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
-use crate::features::Features;
+use crate::features::{self, Features};
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::{Patches, cloud_distances};
@@ -198,7 +198,7 @@ pub fn reconstruct(
         return Err(Error::Degenerate { found });
     }
     let (mut reduced, positions) = points_to_fit(&input, params, &mut clock)?;
-    let sites = sites(
+    let (sites, site_of) = sites(
         &reduced,
         &positions,
         features.noise,
@@ -206,10 +206,6 @@ pub fn reconstruct(
         &mut clock,
     )?;
     let subdomains = cells::divide(&sites, &mut clock)?;
-    let mut site_of = vec![None; positions.len()];
-    for (site, &i) in sites.tree.order.iter().enumerate() {
-        site_of[i as usize] = Some(site as u32);
-    }
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
     let input_of = (&tree.points[..], stands_for);
     let fits = fit::fit(
@@ -231,8 +227,10 @@ pub fn reconstruct(
 
     let normals = reduced.cloud.normals.get_or_insert_default();
     normals.resize(reduced.cloud.points.len(), Vec3::ZERO);
-    for (&i, &normal) in sites.tree.order.iter().zip(&signs.normals) {
-        normals[i as usize] = normal;
+    for (normal, site) in normals.iter_mut().zip(&site_of) {
+        if let Some(site) = site {
+            *normal = signs.normals[*site as usize];
+        }
     }
     let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
     let apart = mesh_distances(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
@@ -515,33 +513,42 @@ fn points_to_fit(
     Ok((reduced, (0..tree.points.len()).map(denoised).collect()))
 }
 
-/// The reduced points, at `positions`, as sites of the fit.
+/// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for
+/// the area of all.
 fn sites(
     reduced: &Reduced,
     positions: &[Vec3],
     input_noise: f32,
     orient: bool,
     progress: &mut dyn Progress,
-) -> Result<Sites> {
+) -> Result<(Sites, Vec<Option<u32>>)> {
     // Points that the unit frame leaves out are no part of a surface.
     let framed: Vec<u32> = (0..positions.len() as u32)
         .filter(|&i| positions[i as usize].abs().max_element() <= 1.0)
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
-    let mut tree = Octree::build(&inside);
-    for i in &mut tree.order {
-        *i = framed[*i as usize];
+    let all = Octree::build(&inside);
+    let copies = features::copies(&all.points);
+    let distinct: Vec<Vec3> = copies.iter().map(|c| all.points[c.start]).collect();
+    let index = |k: usize| framed[all.order[k] as usize];
+    let mut site_of = vec![None; positions.len()];
+    let mut tree = Octree::build(&distinct);
+    let mut spacing = Vec::with_capacity(distinct.len());
+    for (site, c) in tree.order.iter_mut().enumerate() {
+        let copies = copies[*c as usize].clone();
+        *c = index(copies.start);
+        spacing.push(reduced.spacing[*c as usize] * (copies.len() as f32).sqrt());
+        for k in copies {
+            site_of[index(k) as usize] = Some(site as u32);
+        }
     }
+    drop(all);
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
-    let spacing = tree
-        .order
-        .iter()
-        .map(|&i| reduced.spacing[i as usize])
-        .collect();
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
     let noise = Scales::measure(&tree).noise.min(input_noise);
-    Sites::new(tree, normals, spacing, noise, !orient, progress)
+    let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
+    Ok((sites, site_of))
 }
 
 /// How the surface of these sites is extracted.

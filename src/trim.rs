@@ -20,6 +20,11 @@ const AROUND: usize = 24;
 /// A component that is the nearest one to fewer points than this is a phantom: stragglers off a noisy surface make such,
 /// up to about 10 of them together were seen at a noise of 0.5 % of the diagonal.
 const LEAST_POINTS: u32 = SMALLEST as u32;
+/// A second layer has less than this share of the largest component's points.
+const LAYER_POINTS: f64 = 0.1;
+/// Half of its vertices are within this share of a point's reach, some two spacings, of another component. Of the merged range
+/// images of a bunny all pieces are within 0.7, next pieces of other scans are beyond 1.
+const LAYER: f32 = 0.9;
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 1024;
 
@@ -188,25 +193,59 @@ fn quads_around(dual: &Dual) -> Around {
     Around { start, quads }
 }
 
-/// Drops components that are the nearest one to fewer than [`LEAST_POINTS`] points; the one with the most points stays.
-pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3]) {
+/// Drops components that are no part of the surface: those that are the nearest one to fewer than [`LEAST_POINTS`] points
+/// (the one with the most points stays), and second layers: pieces with an end that stand for less than [`LAYER_POINTS`] of
+/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such.
+pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
     let mut roots = components(dual);
-    let used: Vec<u32> = degrees(dual)
-        .iter()
-        .enumerate()
-        .filter(|d| *d.1 > 0)
-        .map(|d| d.0 as u32)
+    let degree = degrees(dual);
+    let used: Vec<u32> = (0..degree.len() as u32)
+        .filter(|&v| degree[v as usize] > 0)
         .collect();
     let Some(&first) = used.first() else { return };
     let root_of: Vec<u32> = used.iter().map(|&v| roots.find(v)).collect();
     if root_of.iter().all(|&r| r == roots.find(first)) {
         return;
     }
-    let positions: Vec<Vec3> = used
-        .iter()
-        .map(|&v| dual.vertices[v as usize].position)
-        .collect();
-    let tree = Octree::build(&positions);
+    let position = |&v: &u32| dual.vertices[v as usize].position;
+    let positions: Vec<Vec3> = used.iter().map(position).collect();
+    let votes = votes(&positions, &root_of, points, dual.vertices.len());
+    let most = votes.iter().copied().max().unwrap_or(0);
+    let least = LEAST_POINTS.min(most);
+    let mut has_end = vec![false; votes.len()];
+    for (&v, &root) in used.iter().zip(&root_of) {
+        has_end[root as usize] |= degree[v as usize] < dual.vertices[v as usize].degree;
+    }
+    let mut dropped: Vec<bool> = votes.iter().map(|&points| points < least).collect();
+    let (mut pieces, mut others) = (Vec::new(), Vec::new());
+    for (&p, &root) in positions.iter().zip(&root_of) {
+        let points = f64::from(votes[root as usize]);
+        if has_end[root as usize] && points < LAYER_POINTS * f64::from(most) {
+            pieces.push((root, p));
+        } else if !dropped[root as usize] {
+            others.push(p);
+        }
+    }
+    if !pieces.is_empty() {
+        let (others, tree) = (Octree::build(&others), Octree::build(points));
+        let away = |(root, p): (u32, Vec3)| {
+            let reach = reach[tree.order[tree.nearest(p).index as usize] as usize];
+            (root, others.nearest(p).distance2.sqrt() / reach)
+        };
+        let mut away: Vec<(u32, f32)> = pieces.into_iter().map(away).collect();
+        away.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        for piece in away.chunk_by(|a, b| a.0 == b.0) {
+            let (root, median) = piece[piece.len() / 2];
+            dropped[root as usize] |= median < LAYER;
+        }
+    }
+    dual.quads
+        .retain(|quad| !dropped[roots.find(quad.vertices[0]) as usize]);
+}
+
+/// How many points each component is the nearest one to, by the vertex that stands for it.
+fn votes(positions: &[Vec3], root_of: &[u32], points: &[Vec3], vertices: usize) -> Vec<u32> {
+    let tree = Octree::build(positions);
     let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
     let nearest = par::map(
         tasks.len(),
@@ -216,15 +255,11 @@ pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3]) {
             tasks[k].iter().map(root).collect::<Vec<u32>>()
         },
     );
-    let mut votes = vec![0u32; dual.vertices.len()];
-    nearest
-        .into_iter()
-        .flatten()
-        .for_each(|root| votes[root as usize] += 1);
-    let most = votes.iter().copied().max().unwrap_or(0);
-    let least = LEAST_POINTS.min(most);
-    dual.quads
-        .retain(|quad| votes[roots.find(quad.vertices[0]) as usize] >= least);
+    let mut votes = vec![0u32; vertices];
+    for root in nearest.into_iter().flatten() {
+        votes[root as usize] += 1;
+    }
+    votes
 }
 
 /// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where

@@ -705,3 +705,32 @@ fn progress_rises_to_one_and_can_cancel() {
         );
     }
 }
+
+#[test]
+fn a_second_layer_is_dropped_and_a_piece_farther_off_stays() {
+    // A ball and a small open sheet over it, whose points reach 0.05.
+    for (radius, components) in [(0.338, 1), (0.4, 2)] {
+        let is_sheet = |x: DVec3| (x.length() - radius).abs() < 0.0185 && x.z > 0.95 * x.length();
+        let value = |x: DVec3| x.length() - if is_sheet(x) { radius } else { 0.3 };
+        let mut points = sample(&|x: DVec3| x.length() - 0.3, 4000);
+        let sheet: Vec<Vec3> = points
+            .iter()
+            .map(|&p| p * (radius / 0.3) as f32)
+            .filter(|p| is_sheet(p.as_dvec3()))
+            .collect();
+        assert!(sheet.len() > 60, "{}", sheet.len());
+        points.extend(sheet);
+        let field = Analytic {
+            value,
+            covered: |x: DVec3| is_sheet(x) || (x.length() - 0.3).abs() < 0.0185,
+            global: value,
+        };
+        let params = ExtractParams {
+            boundary: Boundary::Open,
+            ..SMOOTH
+        };
+        let found = check(&field, &points, params).topology;
+        assert_eq!(found.components, components, "at {radius}");
+        assert_eq!(found.boundary_edges == 0, components == 1);
+    }
+}

@@ -536,6 +536,32 @@ fn odd_input_gives_a_manifold_mesh() {
 }
 
 #[test]
+fn copies_of_points_leave_the_surface_as_it_is() {
+    let once = Shape::Sphere.sample(3000, 0.0, 12);
+    let six: Vec<f64> = (0..6).flat_map(|_| once.iter().copied()).collect();
+    let params = SurfaceParams {
+        boundary: Boundary::Open,
+        ..unreduced()
+    };
+    let expected = surface(&once, &params).unwrap();
+    let found = surface(&six, &params).unwrap();
+    for s in [&expected, &found] {
+        assert_eq!(s.report.boundary_edges, 0);
+        assert_eq!(s.report.components, 1);
+    }
+    let ratio = found.report.triangles as f64 / expected.report.triangles as f64;
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio} times the triangles");
+    // In Morton order copies follow each other.
+    let cloud = &found.cloud.reduced.cloud;
+    let normals = cloud.normals.as_ref().unwrap();
+    for (points, normals) in cloud.points.chunks(6).zip(normals.chunks(6)) {
+        assert!(points.iter().all(|p| *p == points[0]));
+        assert!(normals.iter().all(|n| *n == normals[0]));
+        assert!(normals[0].is_normalized());
+    }
+}
+
+#[test]
 fn residuals_meet_the_accuracy_and_refinement_helps() {
     let positions = Shape::Box.sample(9000, 0.0, 14);
     let coarse = ReduceParams {
