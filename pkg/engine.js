@@ -3,6 +3,7 @@
  * that does them.
  */
 import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
+import { compressorFor } from './compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
@@ -91,7 +92,10 @@ export class Engine {
   /** @param {any} result @param {any} [options] */
   async write(result, options) {
     const { own, transfer, ...watch } = this.#check('write', options);
-    return this.#run({ call: 'write', args: [resultArgument(result, transfer), own] }, watch);
+    const { meshopt, ...plain } = own;
+    const compress = await compressorFor(meshopt);
+    const bytes = await this.#run({ call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
+    return compress ? compress(bytes) : bytes;
   }
 
   /** @param {any} model @param {any} [options] */

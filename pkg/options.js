@@ -10,6 +10,7 @@ import { PointweaveError } from './errors.js';
  * @typedef {object} Rule
  * @property {unknown} [fallback] the default; missing where it depends on other options
  * @property {string} expected in words
+ * @property {string[]} [names] all that are accepted, of a choice
  * @property {(value: unknown, path: string) => boolean | void} accepts may throw an error that says more
  */
 
@@ -47,12 +48,14 @@ const integer = (low, high, fallback) =>
     fallback,
   );
 /** The first is the default. @param {string[]} names */
-const choice = (...names) =>
-  rule(`one of ${names.map((name) => `'${name}'`).join(', ')}`, (value) => names.includes(/** @type {string} */ (value)), names[0]);
+const choice = (...names) => ({
+  ...rule(`one of ${names.map((name) => `'${name}'`).join(', ')}`, (value) => names.includes(/** @type {string} */ (value)), names[0]),
+  names,
+});
 /** @param {boolean} [fallback] */
 const flag = (fallback) => rule('true or false', (value) => typeof value === 'boolean', fallback);
 
-const TARGETS = {
+export const TARGETS = {
   ratio: number(0, 1, { open: '(' }),
   count: integer(1, 0xffffffff),
   tolerance: number(0, 1, { open: '()' }),
@@ -98,8 +101,10 @@ const READ = {
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl'),
   encoding: choice('binary', 'ascii'),
+  quantize: flag(false),
+  meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
 
 const MODEL = choice('duck', 'pig', 'part');
@@ -109,7 +114,7 @@ const SAMPLE = {
   seed: integer(0, Number.MAX_SAFE_INTEGER, 0),
 };
 
-const ENGINE = {
+export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
   worker: flag(),
   wasmUrl: rule(
@@ -124,7 +129,8 @@ const CALL = {
   transfer: flag(false),
 };
 
-const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+/** The command line has its flags from here. */
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.
@@ -140,6 +146,7 @@ export const DEFAULTS = deepFreeze({ reduce: defaultsOf(REDUCE), reconstruct: de
  */
 export function checkOptions(call, options = {}) {
   const { signal, onProgress, transfer, ...own } = checkTable({ ...TABLES[call], ...CALL }, options, '');
+  if (call === 'write') checkCompression(own);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }
 
@@ -175,6 +182,13 @@ function checkTable(table, options, path) {
     if (!table[key].accepts(value, path + key)) throw badOption(path + key, table[key].expected, value);
   }
   return Object.fromEntries(given);
+}
+
+/** @param {Record<string, unknown>} options of `write` */
+function checkCompression({ format = WRITE.format.fallback, quantize, meshopt }) {
+  for (const [option, value] of Object.entries({ quantize, meshopt })) {
+    if (value && format !== 'glb') throw badOption(option, "false, unless format is 'glb'", value);
+  }
 }
 
 /** @type {Rule['accepts']} */
@@ -237,7 +251,7 @@ function show(value) {
  * @param {string[]} names
  * @returns {string | undefined}
  */
-function nearest(word, names) {
+export function nearest(word, names) {
   const ranked = names.map((name) => ({ name, distance: editDistance(word.toLowerCase(), name.toLowerCase()) }));
   ranked.sort((a, b) => a.distance - b.distance);
   return ranked[0]?.distance <= Math.max(2, word.length / 3) ? ranked[0].name : undefined;

@@ -99,7 +99,7 @@ export interface ReduceOptions {
   /** Deepest level of the octree, 1 to 21. Default 21. */
   maxDepth?: number;
   /**
-   * How the cloud's attributes are carried to the reduced points, by name; `colors` names the colours. Default `{}`:
+   * How the cloud's attributes are carried to the reduced points and on to a mesh, by name; `colors` names the colours. Default `{}`:
    * every one is `'mean'`.
    */
   attributes?: Record<string, Carry>;
@@ -264,11 +264,40 @@ export interface ReadOptions {
   format?: Format;
 }
 
+/** The formats that are written, and what of a result they hold: the others leave out what they have no place for. */
+export type OutputFormat =
+  /** Everything, in world coordinates: `double` where they need it. */
+  | 'ply'
+  /** Rows of text: everything but triangles, in world coordinates. */
+  | 'xyz'
+  /**
+   * Binary glTF 2.0: everything. Positions are in single precision, and the origin is the node's translation in double
+   * precision; a cloud in double precision gets an origin near its middle. Axes and unit stay yours. Colours become
+   * linear, attributes `_NAME`; normals are left out where one is zero.
+   */
+  | 'glb'
+  /** Everything but attributes, in world coordinates as text; colours from 0 to 1 stand behind the coordinates. */
+  | 'obj'
+  /** Binary: triangles alone, in single precision. Where there is an origin, the first 80 bytes say `at X Y Z`. */
+  | 'stl';
+
 export interface WriteOptions {
   /** Default `'ply'`. */
-  format?: Format;
+  format?: OutputFormat;
   /** Of a PLY file. Default `'binary'` (little-endian). */
   encoding?: 'binary' | 'ascii';
+  /**
+   * Of a GLB file: positions in steps of 1/65535 of the longest side and normals in steps of 1/127, which take half the room
+   * (`KHR_mesh_quantization`, which viewers read without a decoder). Default `false`.
+   */
+  quantize?: boolean;
+  /**
+   * Of a GLB file: compressed without loss (`EXT_meshopt_compression`), vertices and triangles in another order; viewers need
+   * a decoder. Needs `@gltf-transform/core`, `@gltf-transform/extensions` and `meshoptimizer`, which are loaded when asked for,
+   * and computes in the caller's thread. Where a bundler makes the program, `compress` of `pointweave/meshopt` takes the place
+   * of `true`. Default `false`.
+   */
+  meshopt?: boolean | ((glb: Uint8Array) => Promise<Uint8Array>);
 }
 
 export type Model = 'duck' | 'pig' | 'part';
@@ -332,7 +361,8 @@ export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reco
 
 export type ErrorCode =
   | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
-  | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal';
+  | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
+  | 'bad-index' | 'needs-triangles' | 'missing-package';
 
 /** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
 export class PointweaveError extends Error {

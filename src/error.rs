@@ -27,6 +27,16 @@ pub enum Error {
         /// Its length.
         found: usize,
     },
+    /// A triangle's corner is no point.
+    #[error("indices[{index}] is {found}: there are {points} points")]
+    BadIndex {
+        /// Where in the array.
+        index: usize,
+        /// How many points there are.
+        points: usize,
+        /// The value.
+        found: u32,
+    },
     /// A coordinate or another value is NaN or infinite.
     #[error("{array} of point {index} is {found}: expected a finite number")]
     NonFinite {
@@ -61,6 +71,11 @@ pub enum Error {
         /// How the content starts.
         found: String,
     },
+    /// A format that holds triangles alone was asked for points.
+    #[error(
+        "an STL file holds triangles, and there are none: write points as PLY, XYZ, GLB or OBJ"
+    )]
+    NeedsTriangles,
     /// The file's content breaks its format's rules.
     #[error("bad {format} file at {place} {at}: expected {expected}, found {found}")]
     BadFile {
@@ -100,10 +115,12 @@ impl Error {
             Error::EmptyCloud => "empty-cloud",
             Error::TooFewPoints { .. } => "too-few-points",
             Error::BadLength { .. } => "bad-length",
+            Error::BadIndex { .. } => "bad-index",
             Error::NonFinite { .. } => "non-finite",
             Error::BadOption { .. } => "bad-option",
             Error::Degenerate { .. } => "degenerate",
             Error::UnknownFormat { .. } => "unknown-format",
+            Error::NeedsTriangles => "needs-triangles",
             Error::BadFile { .. } => "bad-file",
             Error::UnsupportedFile { .. } => "unsupported-file",
             Error::Cancelled => "cancelled",
@@ -114,7 +131,7 @@ impl Error {
     /// The point, line or byte where it happened, where there is one.
     pub fn index(&self) -> Option<u64> {
         match self {
-            Error::NonFinite { index, .. } => Some(*index as u64),
+            Error::NonFinite { index, .. } | Error::BadIndex { index, .. } => Some(*index as u64),
             Error::BadFile { at, .. } => Some(*at),
             _ => None,
         }
@@ -125,6 +142,8 @@ impl Error {
         match self {
             Error::EmptyCloud => Some("at least one point".into()),
             Error::TooFewPoints { needed, .. } => Some(format!("at least {needed} points")),
+            Error::BadIndex { points, .. } => Some(format!("a number under {points}")),
+            Error::NeedsTriangles => Some("a mesh".into()),
             Error::NonFinite { .. } => Some("a finite number".into()),
             Error::Degenerate { .. } => Some("points that span a surface".into()),
             Error::BadLength { expected, .. }
@@ -142,6 +161,8 @@ impl Error {
             Error::EmptyCloud => Some("0 points".into()),
             Error::TooFewPoints { found, .. } => Some(format!("{found} points")),
             Error::BadLength { found, .. } => Some(found.to_string()),
+            Error::BadIndex { found, .. } => Some(found.to_string()),
+            Error::NeedsTriangles => Some("points alone".into()),
             Error::NonFinite { found, .. } => Some(found.to_string()),
             Error::BadOption { found, .. }
             | Error::Degenerate { found }

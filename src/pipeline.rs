@@ -232,7 +232,13 @@ pub fn reconstruct(
             *normal = signs.normals[*site as usize];
         }
     }
-    let (colors, attributes) = attach(&mesh.vertices, &sites.tree, &reduced.cloud);
+    let carried = params.reduce.as_ref().map(|r| r.attributes.clone());
+    let (colors, attributes) = attach(
+        &mesh.vertices,
+        &sites.tree,
+        &reduced.cloud,
+        &carried.unwrap_or_default(),
+    );
     let apart = mesh_distances(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
     let distances = params.distances.then(|| {

@@ -347,7 +347,7 @@ pub fn carry(
 }
 
 /// The value with the most votes, of equals the smallest; `None` without votes.
-fn majority<T: Copy + PartialEq>(
+pub(crate) fn majority<T: Copy + PartialEq>(
     votes: impl Iterator<Item = (T, f32)>,
     order: fn(&T, &T) -> Ordering,
 ) -> Option<T> {

@@ -6,7 +6,7 @@
 
 use crate::cloud::{Attribute, Cloud};
 use crate::error::Error;
-use crate::formats::{self, Format, Positions, RawCloud, WriteOptions};
+use crate::formats::{self, Format, Output, Positions, RawCloud, WriteOptions};
 use crate::params::{ReduceParams, SurfaceParams};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::progress::{Progress, Stage};
@@ -137,21 +137,27 @@ pub fn read(bytes: &[u8], options: JsValue) -> JsResult {
 struct WriteSettings {
     format: Option<String>,
     encoding: Option<String>,
+    #[serde(default)]
+    quantize: bool,
 }
 
-/// [`formats::write`] of `{ format, encoding }`: the file's bytes.
+/// [`formats::write`] of `{ format, encoding, quantize }`: the file's bytes.
 #[wasm_bindgen]
 pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValue> {
-    let WriteSettings { format, encoding } = from_js(options)?;
-    let format = format_named(format.as_deref().unwrap_or("ply"))?;
-    let ascii = encoding.as_deref() == Some("ascii");
-    let indices = result.indices().map(|indices| indices.to_vec());
-    let bytes = formats::write(
-        &result.read(),
-        indices.as_deref(),
+    let WriteSettings {
         format,
-        WriteOptions { ascii },
-    )?;
+        encoding,
+        quantize,
+    } = from_js(options)?;
+    let name = format.as_deref().unwrap_or("ply");
+    let format = Output::from_name(name)
+        .ok_or_else(|| bad_option("format", "ply, xyz, glb, obj or stl", name))?;
+    let options = WriteOptions {
+        ascii: encoding.as_deref() == Some("ascii"),
+        quantize,
+    };
+    let indices = result.indices().map(|indices| indices.to_vec());
+    let bytes = formats::write(&result.read(), indices.as_deref(), format, options)?;
     Ok(Uint8Array::from(&bytes[..]))
 }
 

@@ -4,7 +4,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use pointweave::error::Error;
-use pointweave::formats::{Format, Positions, RawCloud, WriteOptions, detect, read, write};
+use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, detect, read, write};
 use std::path::PathBuf;
 
 /// What a file is expected to give: points left out and kept, or an error code with the line or byte.
@@ -311,7 +311,12 @@ fn georeferenced_coordinates_stay_exact() {
     assert_eq!(positions[..3], [289_814.15, 4_320_978.61, 170.76]);
     for format in Format::ALL {
         for ascii in [false, true] {
-            let bytes = write(&cloud, None, format, WriteOptions { ascii }).unwrap();
+            let options = WriteOptions {
+                ascii,
+                ..Default::default()
+            };
+            let output = Output::from_name(format.name()).unwrap();
+            let bytes = write(&cloud, None, output, options).unwrap();
             assert_eq!(read(&bytes, format).unwrap().positions, cloud.positions);
         }
     }

@@ -1,7 +1,7 @@
 //! Readers and writers: dialects, round trips, and damaged input. Files that others made are in `files.rs`.
 
 use pointweave::cloud::Attribute;
-use pointweave::formats::{Format, Positions, RawCloud, WriteOptions, detect, read, write};
+use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, detect, read, write};
 use pointweave::rng::Rng;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -18,7 +18,7 @@ fn origin_is_added_in_double_precision() {
     let mut cloud = RawCloud::new(Positions::F32(vec![0.25, 0.5, 0.75, 1.0, 2.0, 3.0]));
     cloud.origin = Some([500_000.0, 4_000_000.0, 100.0]);
     for format in Format::ALL {
-        let bytes = write(&cloud, None, format, WriteOptions::default()).unwrap();
+        let bytes = write(&cloud, None, output(format), WriteOptions::default()).unwrap();
         let expected = [
             500_000.25,
             4_000_000.5,
@@ -181,12 +181,25 @@ fn full_cloud(points: usize) -> RawCloud {
     cloud
 }
 
+/// The format that is written, of one that is read.
+fn output(format: Format) -> Output {
+    Output::from_name(format.name()).unwrap()
+}
+
+/// A text, or not, with nothing else chosen.
+fn text(ascii: bool) -> WriteOptions {
+    WriteOptions {
+        ascii,
+        ..Default::default()
+    }
+}
+
 #[test]
 fn what_is_written_reads_back_to_the_same_bits() {
     let mut cloud = full_cloud(257);
     for format in Format::ALL {
         for ascii in [false, true] {
-            let bytes = write(&cloud, None, format, WriteOptions { ascii }).unwrap();
+            let bytes = write(&cloud, None, output(format), text(ascii)).unwrap();
             assert_eq!(detect(&bytes, None).unwrap(), format);
             assert_eq!(
                 read(&bytes, format).unwrap(),
@@ -197,13 +210,7 @@ fn what_is_written_reads_back_to_the_same_bits() {
     }
     let triangles = [0, 1, 2, 2, 1, 3];
     for ascii in [false, true] {
-        let bytes = write(
-            &cloud,
-            Some(&triangles),
-            Format::Ply,
-            WriteOptions { ascii },
-        )
-        .unwrap();
+        let bytes = write(&cloud, Some(&triangles), Output::Ply, text(ascii)).unwrap();
         cloud.faces = 2;
         assert_eq!(read(&bytes, Format::Ply).unwrap(), cloud);
     }
@@ -214,13 +221,7 @@ fn a_triangle_is_written_byte_for_byte() {
     let cloud = RawCloud::new(Positions::F32(vec![
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0,
     ]));
-    let text = write(
-        &cloud,
-        Some(&[0, 1, 2]),
-        Format::Ply,
-        WriteOptions { ascii: true },
-    )
-    .unwrap();
+    let text = write(&cloud, Some(&[0, 1, 2]), Output::Ply, text(true)).unwrap();
     let expected = "ply\nformat ascii 1.0\ncomment Pointweave\nelement vertex 3\nproperty float x\nproperty float y\n\
                     property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
                     0.0 0.0 0.0\n1.0 0.0 0.0\n0.0 1.0 0.0\n3 0 1 2\n";
@@ -233,7 +234,7 @@ fn names_of_attributes_never_clash() {
     cloud.attributes[0].name = "red".into();
     cloud.attributes[1].name = "my value".into();
     for format in Format::ALL {
-        let bytes = write(&cloud, None, format, WriteOptions::default()).unwrap();
+        let bytes = write(&cloud, None, output(format), WriteOptions::default()).unwrap();
         let back = read(&bytes, format).unwrap();
         assert_eq!(back.colors, cloud.colors);
         assert_eq!(back.attributes.len(), 2, "{format:?}");
@@ -246,18 +247,91 @@ fn names_of_attributes_never_clash() {
 fn arrays_of_the_wrong_length_are_not_written() {
     let mut cloud = full_cloud(2);
     cloud.colors = Some(vec![0; 5]);
-    for format in Format::ALL {
+    for format in Output::ALL {
         let error = write(&cloud, None, format, WriteOptions::default()).unwrap_err();
         assert_eq!(error.code(), "bad-length");
     }
     let error = write(
         &full_cloud(3),
         Some(&[0, 1]),
-        Format::Ply,
+        Output::Ply,
         WriteOptions::default(),
     )
     .unwrap_err();
     assert_eq!(error.code(), "bad-length");
+}
+
+#[test]
+fn triangles_name_points_that_are_there() {
+    for format in Output::ALL {
+        let corners = Some(&[0, 1, 2, 2, 3, 0][..]);
+        let error = write(&full_cloud(3), corners, format, text(false)).unwrap_err();
+        assert_eq!((error.code(), error.index()), ("bad-index", Some(4)));
+        assert_eq!(error.found().as_deref(), Some("3"));
+    }
+}
+
+#[test]
+fn an_stl_file_needs_triangles() {
+    let error = write(&full_cloud(3), None, Output::Stl, text(false)).unwrap_err();
+    assert_eq!(error.code(), "needs-triangles");
+    assert!(error.to_string().contains("PLY, XYZ, GLB or OBJ"));
+    let bytes = write(&full_cloud(3), Some(&[]), Output::Stl, text(false)).unwrap();
+    assert_eq!(bytes.len(), 84);
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_refused() {
+    let mut cloud = full_cloud(3);
+    cloud.attributes[1].values[2] = f32::INFINITY;
+    let error = write(&cloud, None, Output::Glb, text(false)).unwrap_err();
+    assert_eq!((error.code(), error.index()), ("non-finite", Some(2)));
+    for format in [Output::Glb, Output::Stl] {
+        let lost = RawCloud::new(Positions::F32(vec![0.0, 1.0, 2.0, 3.0, f32::NAN, 5.0]));
+        let error = write(&lost, Some(&[0, 1, 0]), format, text(false)).unwrap_err();
+        assert_eq!((error.code(), error.index()), ("non-finite", Some(1)));
+    }
+    let empty = RawCloud::new(Positions::F32(Vec::new()));
+    let error = write(&empty, None, Output::Glb, text(false)).unwrap_err();
+    assert_eq!(error.code(), "empty-cloud");
+}
+
+/// The text that an STL file starts with, without the blanks.
+fn stl_text(cloud: &RawCloud) -> String {
+    let bytes = write(cloud, Some(&[0, 1, 0]), Output::Stl, text(false)).unwrap();
+    String::from_utf8(bytes[..80].to_vec())
+        .unwrap()
+        .trim()
+        .into()
+}
+
+#[test]
+fn the_origin_of_single_precision_has_few_digits() {
+    let near = |origin: Option<[f64; 3]>, positions: Positions| RawCloud {
+        origin,
+        ..RawCloud::new(positions)
+    };
+    let small = vec![0.5, 0.25, -1.0, 2.0, 3.0, 4.0];
+    let single = Positions::F32(small.iter().map(|&x| x as f32).collect());
+    assert_eq!(stl_text(&near(None, single.clone())), "Pointweave");
+    assert_eq!(
+        stl_text(&near(None, Positions::F64(small.clone()))),
+        "Pointweave"
+    );
+    // The cloud's own, to the last bit.
+    let longest = [-2.2250738585072014e-308, 1.7976931348623157e308, 0.1];
+    for positions in [single, Positions::F64(small.clone())] {
+        let text = stl_text(&near(Some(longest), positions));
+        assert_eq!(
+            text,
+            "at -2.2250738585072014e-308 1.7976931348623157e308 0.1"
+        );
+    }
+    // One of its own: the sides are up to 5 long, so it is a multiple of 4.
+    let far = [4_512_345.123, -543_211.789, 100.5];
+    let georeferenced = (0..6).map(|k| small[k] + far[k % 3]).collect();
+    let text = stl_text(&near(None, Positions::F64(georeferenced)));
+    assert_eq!(text, "at 4512348.0 -543212.0 104.0");
 }
 
 #[test]
@@ -277,18 +351,12 @@ fn small_files() -> Vec<(Format, Vec<u8>)> {
     for ascii in [false, true] {
         files.push((
             Format::Ply,
-            write(
-                &cloud,
-                Some(&[0, 1, 2]),
-                Format::Ply,
-                WriteOptions { ascii },
-            )
-            .unwrap(),
+            write(&cloud, Some(&[0, 1, 2]), Output::Ply, text(ascii)).unwrap(),
         ));
     }
     files.push((
         Format::Xyz,
-        write(&cloud, None, Format::Xyz, WriteOptions::default()).unwrap(),
+        write(&cloud, None, Output::Xyz, WriteOptions::default()).unwrap(),
     ));
     files.push((
         Format::Xyz,

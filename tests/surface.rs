@@ -5,7 +5,7 @@ mod common;
 use common::{Shape, points};
 use glam::{DMat3, DVec3};
 use pointweave::distance::mesh_distance;
-use pointweave::params::{Boundary, Kernel, Propagation, Target};
+use pointweave::params::{Boundary, COLORS, Carry, Kernel, Propagation, Target};
 use pointweave::progress::Silent;
 use pointweave::report::{area, topology, volume};
 use pointweave::{Cloud, Error, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
@@ -465,6 +465,50 @@ fn colours_scalars_and_origin_reach_the_vertices() {
     assert_eq!(s.attributes[0].name, "height");
     for (p, h) in points(&vertices).zip(&s.attributes[0].values) {
         assert!((p.z - *h as f64).abs() < 0.1, "{h} at height {}", p.z);
+    }
+}
+
+#[test]
+fn labels_stay_labels_on_the_vertices() {
+    let positions = Shape::Sphere.sample(4000, 0.0, 10);
+    let class = |p: DVec3| if p.x > 0.0 { 2.0 } else { 9.0 };
+    let labels: Vec<f32> = points(&positions).map(class).collect();
+    let color = |p: DVec3| if p.y > 0.0 { [200, 0, 3] } else { [0, 90, 7] };
+    let colors: Vec<u8> = points(&positions).flat_map(color).collect();
+    let cloud = ["mean", "majority", "nearest"]
+        .iter()
+        .try_fold(Cloud::from_f64(&positions).unwrap(), |cloud, name| {
+            cloud.with_attribute(name, &labels)
+        })
+        .and_then(|cloud| cloud.with_colors(&colors))
+        .unwrap();
+    for how in [Carry::Mean, Carry::Majority, Carry::Nearest] {
+        let named = [
+            ("majority", Carry::Majority),
+            ("nearest", Carry::Nearest),
+            (COLORS, how),
+        ];
+        let reduce = ReduceParams {
+            attributes: named.map(|(name, how)| (name.into(), how)).into(),
+            ..Default::default()
+        };
+        let params = SurfaceParams {
+            reduce: Some(reduce),
+            ..Default::default()
+        };
+        let s = reconstruct(&cloud, &params, &mut Silent).unwrap();
+        let [mean, majority, nearest] = [0, 1, 2].map(|a| &s.attributes[a].values);
+        assert!(mean.iter().any(|v| (3.0..8.0).contains(v)), "means between");
+        let vertices = s.positions_f64();
+        for (kind, values) in [("majority", majority), ("nearest", nearest)] {
+            for (p, v) in points(&vertices).zip(values) {
+                assert!([2.0, 9.0].contains(v), "{kind}: {v}");
+                assert!(p.x.abs() < 0.2 || *v == class(p), "{kind}: {v} at {p}");
+            }
+        }
+        let colors = s.colors.as_ref().unwrap();
+        let pure = colors.iter().all(|c| [[200, 0, 3], [0, 90, 7]].contains(c));
+        assert_eq!(pure, how != Carry::Mean, "{how:?}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Files: bytes to arrays and back. One file a format; what they share is here, in `lines` and in `table`.
+//! Files: bytes to arrays, one file a format, and back, in `write`; what readers share is here, in `lines` and in `table`.
 //!
 //! Bytes come from strangers. A reader returns a right result or a typed error that names the line or byte, never
 //! panics, and never reserves memory on the word of a header: only what the bytes that are really there can fill.
@@ -6,13 +6,16 @@
 mod lines;
 mod ply;
 mod table;
+mod write;
 mod xyz;
 
 use crate::cloud::{Attribute, Cloud};
 use crate::error::{Error, Result};
 use crate::pipeline::Surface;
 
-/// A file format.
+pub use write::{Output, WriteOptions, write};
+
+/// A file format that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// PLY, the Stanford polygon format: ascii, binary little endian, binary big endian.
@@ -234,40 +237,6 @@ pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
         Format::Ply => ply::read(bytes),
         Format::Xyz => xyz::read(bytes),
     }
-}
-
-/// How a file is written.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct WriteOptions {
-    /// Text instead of binary, where the format has both. Default: binary.
-    pub ascii: bool,
-}
-
-/// Writes points, and with `triangles` (three indices each) a mesh, in world coordinates: the origin is added, in
-/// double precision. XYZ keeps the points alone.
-///
-/// # Errors
-/// [`Error::BadLength`] where an array does not have one entry a point, or the triangles' length is no multiple of 3.
-pub fn write(
-    cloud: &RawCloud,
-    triangles: Option<&[u32]>,
-    format: Format,
-    options: WriteOptions,
-) -> Result<Vec<u8>> {
-    cloud.check_lengths()?;
-    if let Some(indices) = triangles
-        && !indices.len().is_multiple_of(3)
-    {
-        return Err(Error::BadLength {
-            array: "indices".into(),
-            expected: "a multiple of 3".into(),
-            found: indices.len(),
-        });
-    }
-    Ok(match format {
-        Format::Ply => ply::write(cloud, triangles, options.ascii),
-        Format::Xyz => xyz::write(cloud),
-    })
 }
 
 /// The name of a format that is recognised by its first bytes but has no reader here.

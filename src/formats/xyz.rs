@@ -14,7 +14,7 @@
 //!   that fit nothing become attributes `column4`, `column5` ….
 
 use super::lines::{Lines, number, quote};
-use super::table::{self, Columns, Table};
+use super::table::{Columns, Table};
 use super::{Positions, RawCloud};
 use crate::error::{Error, Result};
 
@@ -54,48 +54,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawCloud> {
         reader.line(line, lines.number, &mut row)?;
     }
     reader.finish(lines.number)
-}
-
-/// Writes points as rows of text that reads back to the same bits, after a comment that names the columns. World
-/// coordinates are in double precision where they or the origin need it.
-pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {
-    let names: Vec<String> = table::names(cloud)
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
-    let mut out = format!("# {}\n", names.join(" "));
-    let double = cloud.origin.is_some() || matches!(cloud.positions, Positions::F64(_));
-    let origin = cloud.origin.unwrap_or_default();
-    for i in 0..cloud.points() {
-        let values: [String; 3] = [0, 1, 2].map(|axis| {
-            let x = cloud.positions.get(3 * i + axis) + origin[axis];
-            if double {
-                format!("{x:?}")
-            } else {
-                format!("{:?}", x as f32)
-            }
-        });
-        out += &values.join(" ");
-        for n in cloud
-            .normals
-            .iter()
-            .flat_map(|normals| &normals[3 * i..3 * i + 3])
-        {
-            out += &format!(" {n:?}");
-        }
-        for c in cloud
-            .colors
-            .iter()
-            .flat_map(|colors| &colors[3 * i..3 * i + 3])
-        {
-            out += &format!(" {c}");
-        }
-        for attribute in &cloud.attributes {
-            out += &format!(" {:?}", attribute.values[i]);
-        }
-        out.push('\n');
-    }
-    out.into_bytes()
 }
 
 /// Without the byte order mark of UTF-8.

@@ -1,6 +1,6 @@
 //! `cargo run --release --example scan_to_mesh scan.ply mesh.ply`: a third of the points, and the mesh through them.
 
-use pointweave::formats::{Format, RawCloud, detect, read, write};
+use pointweave::formats::{Output, RawCloud, detect, read, write};
 use pointweave::progress::Silent;
 use pointweave::{SurfaceParams, reconstruct};
 
@@ -13,15 +13,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cloud = read(&bytes, detect(&bytes, Some(scan))?)?.to_cloud()?;
     let surface = reconstruct(&cloud, &SurfaceParams::default(), &mut Silent)?;
     let file = RawCloud::of_surface(&surface);
-    std::fs::write(
-        mesh,
-        write(
-            &file,
-            Some(surface.indices()),
-            Format::Ply,
-            Default::default(),
-        )?,
-    )?;
+    let name = mesh.rsplit('.').next().unwrap_or_default();
+    let format = Output::from_name(name).ok_or("the mesh is a .ply, .glb, .obj, .stl or .xyz")?;
+    let bytes = write(&file, Some(surface.indices()), format, Default::default())?;
+    std::fs::write(mesh, bytes)?;
     println!(
         "{} points, {} triangles",
         cloud.len(),

@@ -2,8 +2,9 @@
 
 import {
   DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
-  type CloudInfo, type Engine, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
+  type CloudInfo, type Engine, type OutputFormat, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
 } from 'pointweave';
+import { compress } from 'pointweave/meshopt';
 import type * as browser from '../../pkg/index.js';
 import type * as node from '../../pkg/index.node.js';
 
@@ -26,6 +27,7 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
   const bytes: Uint8Array = await write(mesh, { format: 'ply', encoding: 'ascii' });
+  const glb: Uint8Array = await write(reduced, { format: 'glb' satisfies OutputFormat, quantize: true, meshopt: compress });
   const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/') });
   const duck: PointCloud<Float32Array> = await engine.sample('duck', { count: 1000, seed: 1 });
   await engine.reconstruct(duck, { onProgress: ({ stage, overall }) => console.log(stage satisfies Stage, overall.toFixed()) });
@@ -46,5 +48,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
+  return [info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
 }

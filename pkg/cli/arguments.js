@@ -1,0 +1,134 @@
+/** The command line to what is to be done. Whatever is wrong with it is found here, before a file is opened. */
+import { basename, extname, join } from 'node:path';
+import { parseArgs } from 'node:util';
+import { ENGINE, nearest } from '../options.js';
+import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
+import { checkFormat, FORMATS, formatOf } from './formats.js';
+import { UsageError } from './usage.js';
+
+/** @import { Command } from './flags.js' */
+
+/**
+ * @typedef {object} Job
+ * @property {string} input `-` is standard input
+ * @property {string} [output] `-` is standard output
+ */
+
+/**
+ * @typedef {object} Task
+ * @property {Command} command
+ * @property {Job[]} jobs
+ * @property {string} [folder] for the results of a batch
+ * @property {boolean} json
+ * @property {'auto' | number} threads
+ * @property {Record<string, any>} own options of the function that has the command's name
+ * @property {Record<string, any>} write options of `write`, without the format
+ * @property {string} [format] of the results
+ */
+
+/** @type {Command[]} */
+const COMMANDS = ['reduce', 'reconstruct', 'inspect'];
+
+/**
+ * @param {string[]} argv
+ * @returns {Task | { help?: Command } | { version: true }}
+ */
+export function parse(argv) {
+  const [first, ...rest] = argv;
+  if (first === '--version' || first === '-v') return { version: true };
+  if (first === '--help' || first === '-h') return {};
+  if (first === undefined) throw new UsageError('a command is needed: reduce, reconstruct or inspect');
+  const command = COMMANDS.find((name) => name === first);
+  if (!command) throw new UsageError(`there is no command '${first}'${hint(first, COMMANDS)}`);
+  const { values, positionals: inputs } = parseFlags(command, rest);
+  return values.help ? { help: command } : task(command, values, inputs);
+}
+
+/** @param {Command} command @param {string[]} argv */
+function parseFlags(command, argv) {
+  /** @type {import('node:util').ParseArgsConfig['options'] & {}} */
+  const options = {
+    json: { type: 'boolean' },
+    threads: { type: 'string' },
+    help: { type: 'boolean', short: 'h' },
+    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' } }),
+    ...parserOptions(flagsOf(command)),
+  };
+  try {
+    return /** @type {{ values: Record<string, any>, positionals: string[] }} */ (parseArgs({ args: argv, options, allowPositionals: true }));
+  } catch (error) {
+    throw new UsageError(explain(/** @type {Error & { code?: string }} */ (error), command, Object.keys(options)));
+  }
+}
+
+/** @param {Error & { code?: string }} error @param {Command} command @param {string[]} names */
+function explain({ code, message }, command, names) {
+  const unknown = code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' && message.match(/'--?([^']+)'/);
+  if (unknown) return `${command} has no option '${unknown[1]}'${hint(unknown[1], names, '--')}`;
+  return message.split('\n')[0];
+}
+
+/** @param {string} word @param {string[]} names */
+function hint(word, names, dashes = '') {
+  const near = nearest(word, names);
+  return near ? `: did you mean ${dashes}${near}?` : '';
+}
+
+/**
+ * @param {Command} command
+ * @param {Record<string, any>} values
+ * @param {string[]} inputs
+ * @returns {Task}
+ */
+function task(command, values, inputs) {
+  if (inputs.length === 0) throw new UsageError(`${command} needs a file`);
+  if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
+  const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
+  const { own, write } = optionsFrom(command, values);
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), own, write };
+  if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
+
+  const { out, 'out-dir': folder } = values;
+  if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
+  const format = formatFor(command, values);
+  checkCompression(write, format);
+  if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
+  if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
+  if (shared.json) return { ...shared, jobs: inputs.map((input) => ({ input })) };
+  throw new UsageError(`where should the result go? -o FILE for one file, --out-dir FOLDER for several, --json for the report alone`);
+}
+
+/** @param {Command} command @param {Record<string, any>} values */
+function formatFor(command, { out, format }) {
+  if (out === undefined || out === '-') return checkFormat(command, format ?? FORMATS[0], `--format ${format ?? FORMATS[0]}`);
+  if (format !== undefined) throw new UsageError(`--format is for --out-dir and standard output: '${out}' has its extension`);
+  return formatOf(command, out);
+}
+
+/** @param {Record<string, any>} write @param {string} format */
+function checkCompression(write, format) {
+  for (const name of ['quantize', 'meshopt']) {
+    if (write[name] && format !== 'glb') throw new UsageError(`--${name} is for GLB files`);
+  }
+}
+
+/** @param {string[]} inputs @param {string} output @param {boolean} json @returns {Job} */
+function single(inputs, output, json) {
+  if (inputs.length > 1) throw new UsageError(`--out takes one file, and there are ${inputs.length}: --out-dir takes them all`);
+  if (output === '-' && json) throw new UsageError('--json and --out - both want standard output');
+  return { input: inputs[0], output };
+}
+
+/** @param {string[]} inputs @param {string} folder @param {string} format @returns {Job[]} */
+function batch(inputs, folder, format) {
+  /** @type {Map<string, string>} */
+  const taken = new Map();
+  return inputs.map((input) => {
+    if (input === '-') throw new UsageError('standard input has no name for --out-dir to use: -o FILE gives it one');
+    const output = join(folder, `${basename(input, extname(input))}.${format}`);
+    const other = taken.get(output);
+    if (other !== undefined) throw new UsageError(`'${other}' and '${input}' would both become '${output}'`);
+    taken.set(output, input);
+    return { input, output };
+  });
+}

@@ -1,0 +1,130 @@
+/** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
+import { PointweaveError } from '../errors.js';
+import { TABLES, TARGETS } from '../options.js';
+import { UsageError } from './usage.js';
+
+/** @import { Rule } from '../options.js' */
+/** @typedef {'reduce' | 'reconstruct' | 'inspect'} Command */
+
+/**
+ * @typedef {object} Flag
+ * @property {string} name as it is typed, without the dashes
+ * @property {string} key the option's name
+ * @property {'target' | 'reduce' | 'reconstruct' | 'write' | 'none'} group
+ * @property {Rule} rule
+ * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
+ */
+
+/** Not flags: what has one of another shape, what the file's name says, and what no file holds. */
+const LEFT_OUT = { reduce: ['target', 'assignment'], reconstruct: ['reduce'], write: ['format'] };
+
+/**
+ * @param {Command} command
+ * @returns {Flag[]}
+ */
+export function flagsOf(command) {
+  if (command === 'inspect') return [];
+  const reduce = [...flags('target', TARGETS, []), ...flags('reduce', TABLES.reduce, LEFT_OUT.reduce)];
+  const surface = [none, ...flags('reconstruct', TABLES.reconstruct, LEFT_OUT.reconstruct)];
+  return [...reduce, ...(command === 'reconstruct' ? surface : []), ...flags('write', TABLES.write, LEFT_OUT.write)];
+}
+
+/** `reduce: false`. @type {Flag} */
+const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: TABLES.reconstruct.reduce, kind: 'value' };
+
+/**
+ * @param {Flag['group']} group
+ * @param {Record<string, Rule>} table
+ * @param {string[]} leftOut
+ * @returns {Flag[]}
+ */
+function flags(group, table, leftOut) {
+  const keys = Object.keys(table).filter((key) => !leftOut.includes(key));
+  return keys.map((key) => {
+    const rule = table[key];
+    const kind = key === 'attributes' ? 'list' : rule.accepts(true, '') ? 'switch' : 'value';
+    return { name: kebab(key), key, group, rule, kind };
+  });
+}
+
+/** @param {string} key */
+function kebab(key) {
+  return key.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+}
+
+/**
+ * How `parseArgs` is told of these flags.
+ * @param {Flag[]} flags
+ */
+export function parserOptions(flags) {
+  /** @type {Record<string, { type: 'boolean' | 'string', multiple?: boolean }>} */
+  const options = {};
+  for (const { name, kind, group } of flags) {
+    if (kind === 'switch') options[name] = options[`no-${name}`] = { type: 'boolean' };
+    else if (group === 'none') options[name] = { type: 'boolean' };
+    else options[name] = { type: 'string', multiple: kind === 'list' };
+  }
+  return options;
+}
+
+/**
+ * The package's options that were given as flags.
+ * @param {Command} command
+ * @param {Record<string, any>} values by name, of `parseArgs`
+ */
+export function optionsFrom(command, values) {
+  /** @type {Record<Flag['group'], Record<string, any>>} */
+  const given = { target: {}, reduce: {}, reconstruct: {}, write: {}, none: {} };
+  for (const flag of flagsOf(command)) {
+    const value = valueOf(flag, values);
+    if (value !== undefined) given[flag.group][flag.key] = value;
+  }
+  const targets = Object.keys(given.target);
+  if (targets.length > 1) throw new UsageError(`${targets.map((key) => `--${key}`).join(' and ')} exclude each other`);
+  if (targets.length === 1) given.reduce.target = given.target;
+  const reduces = Object.keys(given.reduce).length > 0;
+  if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
+  const nested = reduces ? { reduce: given.reduce } : given.none;
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, write: given.write };
+}
+
+/** @param {Flag} flag @param {Record<string, any>} values */
+function valueOf({ name, key, group, rule, kind }, values) {
+  if (group === 'none') return values[name] ? false : undefined;
+  if (kind === 'switch') {
+    const [on, off] = [values[name], values[`no-${name}`]];
+    if (on && off) throw new UsageError(`--${name} and --no-${name} exclude each other`);
+    return on ? true : off ? false : undefined;
+  }
+  if (values[name] === undefined) return undefined;
+  return kind === 'list' ? listOf(name, key, rule, values[name]) : parseValue(name, rule, values[name]);
+}
+
+/**
+ * A word where the rule takes it, or the number that it spells.
+ * @param {string} name
+ * @param {Rule} rule
+ * @param {string} text
+ */
+export function parseValue(name, rule, text) {
+  const number = text.trim() === '' ? NaN : Number(text);
+  const value = [text, number].find((candidate) => rule.accepts(candidate, name));
+  if (value === undefined) throw new UsageError(`--${name} is '${text}': expected ${rule.expected}`);
+  return value;
+}
+
+/** @param {string} name @param {string} key @param {Rule} rule @param {string[]} texts each `name=how` */
+function listOf(name, key, rule, texts) {
+  const entries = texts.map((text) => {
+    const at = text.lastIndexOf('=');
+    if (at < 1) throw new UsageError(`--${name} is '${text}': expected NAME=HOW`);
+    return [text.slice(0, at), text.slice(at + 1)];
+  });
+  const value = Object.fromEntries(entries);
+  try {
+    rule.accepts(value, key);
+  } catch (error) {
+    throw error instanceof PointweaveError ? new UsageError(error.message) : error;
+  }
+  return value;
+}

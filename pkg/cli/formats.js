@@ -1,0 +1,33 @@
+/** What a file's name says of its format. */
+import { extname } from 'node:path';
+import { TABLES } from '../options.js';
+import { UsageError } from './usage.js';
+
+/** @import { Command } from './flags.js' */
+
+/** All that are written. */
+export const FORMATS = TABLES.write.format.names;
+/** The one that holds triangles alone. */
+const MESHES_ALONE = 'stl';
+
+/**
+ * @param {Command} command
+ * @param {string} format
+ * @param {string} what says it
+ */
+export function checkFormat(command, format, what) {
+  const possible = FORMATS.filter((name) => command === 'reconstruct' || name !== MESHES_ALONE);
+  if (possible.includes(format)) return format;
+  const names = possible.join(', ');
+  throw new UsageError(
+    format === MESHES_ALONE ? `${what}: an STL file holds triangles, not points: expected ${names}` : `${what} is no format that is written: expected ${names}`,
+  );
+}
+
+/**
+ * @param {Command} command
+ * @param {string} file
+ */
+export function formatOf(command, file) {
+  return checkFormat(command, extname(file).slice(1).toLowerCase(), `'${file}'`);
+}

@@ -1,0 +1,138 @@
+/** Does what the command line asks for, one file after the other. */
+import { mkdir, stat } from 'node:fs/promises';
+import { dirname } from 'node:path';
+import { createEngine } from '../index.node.js';
+import { PointweaveError, toRecord } from '../errors.js';
+import { Bar } from './bar.js';
+import { readInput, sameFile, sentence, writeOutput } from './files.js';
+import { UsageError } from './usage.js';
+import { infoLines, reportLine } from './words.js';
+
+/** @import { Engine } from '../types.js' */
+/** @import { Job, Task } from './arguments.js' */
+
+/** @typedef {Job & ({ report: object, text: string } | { error: unknown })} Outcome */
+
+/**
+ * @param {Task} task
+ * @param {AbortSignal} signal
+ * @returns {Promise<boolean>} whether all of it was done
+ */
+export async function run(task, signal) {
+  await checkOutputs(task.jobs);
+  if (task.folder) await mkdir(task.folder, { recursive: true });
+  // A worker in any case: this thread has to hear Ctrl-C.
+  const engine = await createEngine({ threads: task.threads, worker: true });
+  /** @type {Outcome[]} */
+  const outcomes = [];
+  try {
+    for (const job of task.jobs) {
+      const outcome = await attempt(engine, task, job, outcomes.length, signal);
+      signal.throwIfAborted();
+      outcomes.push(outcome);
+      tell(task, outcome);
+    }
+  } finally {
+    await engine.dispose();
+  }
+  const failed = outcomes.filter((outcome) => 'error' in outcome).length;
+  if (task.json) printJson(outcomes);
+  if (outcomes.length > 1) say(`${outcomes.length - failed} of ${outcomes.length} files done${failed ? `, ${failed} failed` : ''}`);
+  return failed === 0;
+}
+
+/**
+ * No result may take the place of a scan.
+ * @param {Job[]} jobs
+ */
+async function checkOutputs(jobs) {
+  for (const { output } of jobs) {
+    if (output === undefined || output === '-') continue;
+    for (const { input } of jobs) {
+      if (await sameFile(input, output)) throw new UsageError(`'${output}' is the scan itself: a result does not overwrite it`);
+    }
+  }
+}
+
+/**
+ * @param {Engine} engine
+ * @param {Task} task
+ * @param {Job} job
+ * @param {number} done
+ * @param {AbortSignal} signal
+ * @returns {Promise<Outcome>}
+ */
+async function attempt(engine, task, job, done, signal) {
+  const bar = new Bar(process.stderr, task.jobs.length > 1 ? `${done + 1}/${task.jobs.length} ${job.input}` : job.input);
+  try {
+    return { ...job, ...(await perform(engine, task, job, { signal, onProgress: (progress) => bar.update(progress) })) };
+  } catch (error) {
+    return { ...job, error };
+  } finally {
+    bar.clear();
+  }
+}
+
+/**
+ * @param {Engine} engine
+ * @param {Task} task
+ * @param {Job} job
+ * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
+ * @returns {Promise<{ report: object, text: string }>}
+ */
+async function perform(engine, { command, own, write, format }, { input, output }, watch) {
+  const { signal } = watch;
+  if (output !== undefined && output !== '-') await stat(dirname(output)); // before the work, not after it
+  const name = input === '-' ? undefined : input;
+  const cloud = await engine.read(await readInput(input, signal), { name, signal, transfer: true });
+  if (command === 'inspect') {
+    const report = await engine.inspect(cloud, watch);
+    return { report, text: infoLines(report, cloud) };
+  }
+  const result = await engine[command](cloud, { ...own, ...watch, transfer: true });
+  const { report } = result;
+  if (output !== undefined) {
+    const bytes = await engine.write(result, { ...write, format: /** @type {any} */ (format), signal, transfer: true });
+    if (output === '-') await print(bytes);
+    else await writeOutput(output, bytes, signal);
+  }
+  return { report, text: reportLine(report) };
+}
+
+/** @param {Task} task @param {Outcome} outcome */
+function tell({ command, json }, outcome) {
+  const { input, output } = outcome;
+  if ('error' in outcome) say(`${input}: ${sentence(outcome.error)}`);
+  else if (json) return;
+  else if (command === 'inspect') process.stdout.write(`${input}\n${outcome.text}`);
+  else say(`${input} → ${output}: ${outcome.text}`);
+}
+
+/**
+ * The report of one file alone, or an array with one entry a file. A single failure has its line, and nothing else.
+ * @param {Outcome[]} outcomes
+ */
+function printJson(outcomes) {
+  const entries = outcomes.map((outcome) => {
+    const { input, output } = outcome;
+    return 'error' in outcome ? { input, error: errorEntry(outcome.error) } : { input, output, report: outcome.report };
+  });
+  const [only] = entries;
+  const value = entries.length > 1 ? entries : only.report;
+  if (value) process.stdout.write(`${JSON.stringify(value, null, 2)}\n`);
+}
+
+/** @param {unknown} error of this package, with all it says, or of the system with its code */
+function errorEntry(error) {
+  return error instanceof PointweaveError ? toRecord(error) : { code: /** @type {any} */ (error)?.code ?? 'internal', message: sentence(error) };
+}
+
+/** @param {Uint8Array} bytes @returns {Promise<void>} */
+function print(bytes) {
+  return new Promise((resolve, reject) => process.stdout.write(bytes, (error) => (error ? reject(error) : resolve())));
+}
+
+/** @param {string} line */
+export function say(line) {
+  process.stderr.write(`pointweave: ${line}\n`);
+}

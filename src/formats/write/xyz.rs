@@ -1,0 +1,34 @@
+//! Rows of numbers as text, after a comment that names the columns.
+
+use super::names::names;
+use super::{is_double, triple, world};
+use crate::formats::RawCloud;
+use std::fmt::Write;
+
+/// Writes points in text that reads back to the same bits.
+pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {
+    let names: Vec<String> = names(cloud).into_iter().map(|(name, _)| name).collect();
+    let mut out = format!("# {}\n", names.join(" "));
+    let double = is_double(cloud);
+    for i in 0..cloud.points() {
+        for (axis, x) in world(cloud, i).into_iter().enumerate() {
+            let gap = if axis == 0 { "" } else { " " };
+            // Writing to a string cannot fail.
+            let _ = match double {
+                true => write!(out, "{gap}{x:?}"),
+                false => write!(out, "{gap}{:?}", x as f32),
+            };
+        }
+        for n in triple(&cloud.normals, i) {
+            let _ = write!(out, " {n:?}");
+        }
+        for c in triple(&cloud.colors, i) {
+            let _ = write!(out, " {c}");
+        }
+        for attribute in &cloud.attributes {
+            let _ = write!(out, " {:?}", attribute.values[i]);
+        }
+        out.push('\n');
+    }
+    out.into_bytes()
+}
