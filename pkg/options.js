@@ -93,6 +93,7 @@ const RECONSTRUCT = {
   sharp: flag(true),
   boundary: choice('auto', 'closed', 'open'),
   distances: flag(false),
+  keep: flag(false),
 };
 
 const READ = {

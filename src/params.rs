@@ -234,6 +234,9 @@ pub struct SurfaceParams {
     pub boundary: Boundary,
     /// Say of every input point and every vertex how far scan and mesh are apart there. Default `false`.
     pub distances: bool,
+    /// For [`crate::pipeline::reconstruct_again`]: remember what was measured of the cloud and its reduction. Default
+    /// `false`.
+    pub keep: bool,
 }
 
 impl Default for SurfaceParams {
@@ -249,6 +252,7 @@ impl Default for SurfaceParams {
             sharp: true,
             boundary: Boundary::Auto,
             distances: false,
+            keep: false,
         }
     }
 }

@@ -182,22 +182,71 @@ pub fn reconstruct(
     params.validate()?;
     check_surface(cloud, params)?;
     let mut clock = Clock::new(progress);
-    let outliers = params
-        .reduce
-        .as_ref()
-        .map_or(Outliers::Keep, |r| r.outliers);
-    let input = Input::new(Cow::Borrowed(cloud), outliers, &mut clock)?;
+    let input = Input::new(Cow::Borrowed(cloud), outliers(params), &mut clock)?;
+    check_extent(&input)?;
+    let fitted = points_to_fit(&input, params, &mut clock)?;
+    surface(&input, fitted, params, clock)
+}
+
+/// What is remembered of a cloud from one call to the next.
+#[derive(Debug, Default)]
+pub struct Memory {
+    input: Option<Input<'static>>,
+    /// How it was reduced, and what came out.
+    fitted: Option<(Option<ReduceParams>, (Reduced, Vec<Vec3>))>,
+}
+
+/// [`reconstruct`] that does not do again what the call before has done for the same cloud, to the same bytes: the
+/// measurements, and the reduction where its options are the same too. Stages that were not run have no time in the
+/// report. Costs about 200 bytes a point until the memory is dropped or another cloud comes.
+///
+/// # Errors
+/// Those of [`reconstruct`].
+pub fn reconstruct_again(
+    cloud: Cloud,
+    params: &SurfaceParams,
+    memory: &mut Memory,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
+    params.validate()?;
+    check_surface(&cloud, params)?;
+    let mut clock = Clock::new(progress);
+    // Without its strays a cloud is another one than the caller hands over.
+    let whole = outliers(params) == Outliers::Keep;
+    let known = |input: &Input| whole && input.is_of(&cloud);
+    let input = match memory.input.take().filter(known) {
+        Some(input) => input,
+        None => {
+            memory.fitted = None;
+            Input::new(Cow::Owned(cloud), outliers(params), &mut clock)?
+        }
+    };
+    check_extent(&input)?;
+    let fitted = match memory.fitted.take() {
+        Some((reduce, fitted)) if reduce == params.reduce => fitted,
+        _ => points_to_fit(&input, params, &mut clock)?,
+    };
+    let made = surface(&input, fitted.clone(), params, clock);
+    if whole {
+        memory.fitted = Some((params.reduce.clone(), fitted));
+        memory.input = Some(input);
+    }
+    made
+}
+
+/// The surface through the reduced cloud, at `positions`.
+fn surface(
+    input: &Input,
+    (mut reduced, positions): (Reduced, Vec<Vec3>),
+    params: &SurfaceParams,
+    mut clock: Clock,
+) -> Result<Surface> {
     let Input {
         tree,
         features,
         origin,
         ..
-    } = &input;
-    if features.normals.iter().all(|&n| n == Vec3::ZERO) {
-        let found = "all points lie on one line or at one place".into();
-        return Err(Error::Degenerate { found });
-    }
-    let (mut reduced, positions) = points_to_fit(&input, params, &mut clock)?;
+    } = input;
     let (sites, site_of) = sites(
         &reduced,
         &positions,
@@ -335,6 +384,7 @@ fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Featur
 }
 
 /// What a reduction is made of: the caller's points, or those that are not isolated.
+#[derive(Debug)]
 struct Input<'a> {
     /// Without points where nobody else owns them: the tree has them.
     cloud: Cow<'a, Cloud>,
@@ -344,6 +394,7 @@ struct Input<'a> {
 }
 
 /// Where the points of an [`Input`] come from.
+#[derive(Debug)]
 struct Origin {
     /// Points that the caller gave.
     given: usize,
@@ -414,6 +465,27 @@ impl<'a> Input<'a> {
     }
 }
 
+impl Input<'_> {
+    /// Whether this was measured of these very points, colours and whatever else there is.
+    fn is_of(&self, cloud: &Cloud) -> bool {
+        let Cloud {
+            points,
+            frame,
+            colors,
+            normals,
+            attributes,
+            origin,
+        } = cloud;
+        let (of, tree) = (&self.cloud, &self.tree);
+        let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
+        self.origin.kept.is_none()
+            && tree.points.len() == points.len()
+            && (of.frame, of.origin) == (*frame, *origin)
+            && tree.points.iter().zip(&tree.order).all(place)
+            && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+    }
+}
+
 impl Origin {
     /// How many points were dropped.
     fn dropped(&self) -> usize {
@@ -441,6 +513,21 @@ impl Origin {
             *assignment = all;
         }
     }
+}
+
+/// Whether strays are dropped before a surface is made.
+fn outliers(params: &SurfaceParams) -> Outliers {
+    let reduce = params.reduce.as_ref();
+    reduce.map_or(Outliers::Keep, |reduce| reduce.outliers)
+}
+
+/// Points that span something.
+fn check_extent(input: &Input) -> Result<()> {
+    if input.features.normals.iter().any(|&n| n != Vec3::ZERO) {
+        return Ok(());
+    }
+    let found = "all points lie on one line or at one place".into();
+    Err(Error::Degenerate { found })
 }
 
 fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {

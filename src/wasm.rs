@@ -78,11 +78,27 @@ pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsRes
     reduced_to_js(&result, precision)
 }
 
-/// [`pipeline::reconstruct`].
+/// What is remembered for the next call that has `keep`.
+static MEMORY: Mutex<Option<pipeline::Memory>> = Mutex::new(None);
+
+/// [`pipeline::reconstruct`], or where `keep` is true [`pipeline::reconstruct_again`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
+    let params: SurfaceParams = from_js(options)?;
+    let mut progress = JsProgress(progress);
+    let mut memory = MEMORY
+        .lock()
+        .map_err(|_| Error::Internal("a call before this one panicked".into()))?;
+    if !params.keep {
+        *memory = None;
+    }
     let (input, precision) = cloud.to_cloud()?;
-    let mut surface = pipeline::reconstruct(&input, &from_js(options)?, &mut JsProgress(progress))?;
+    let mut surface = if params.keep {
+        let memory = memory.get_or_insert_default();
+        pipeline::reconstruct_again(input, &params, memory, &mut progress)?
+    } else {
+        pipeline::reconstruct(&input, &params, &mut progress)?
+    };
     sign(&mut surface.report.reduce);
     sign(&mut surface.cloud.report);
     surface_to_js(&surface, precision)

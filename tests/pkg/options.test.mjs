@@ -159,6 +159,7 @@ test('Rust has the same ranges', async () => {
       ['orient', [[true, true], [1, false]]],
       ['sharp', [[false, true], ['no', false]]],
       ['distances', [[true, true], [1, false]]],
+      ['keep', [[true, true], ['yes', false]]],
     ],
   };
   for (const [call, options] of Object.entries(edges)) {

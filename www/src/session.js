@@ -24,6 +24,9 @@ const AMPLE = 60_000;
 const AMPLE_ON_PHONE = 20_000;
 const PHONE = '(pointer: coarse) and (max-width: 900px)';
 
+/** Stages whose settings have not changed are not run again. */
+const REMEMBERED = { keep: true };
+
 /** Codes that say: there is no surface here, but the points can still be reduced. */
 const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
 
@@ -118,7 +121,7 @@ export class Session extends EventTarget {
     const engine = counts.length ? await createEngine() : null;
     try {
       for (const count of counts) {
-        const options = { ...surface, reduce: { ...reduction, target: { count } }, signal };
+        const options = { ...surface, reduce: { ...reduction, target: { count } }, ...REMEMBERED, signal };
         const { report } = await /** @type {import('pointweave').Engine} */ (engine).reconstruct(scan.cloud, options);
         if (signal.aborted) return false;
         found(count, report.distance);
@@ -178,7 +181,7 @@ export class Session extends EventTarget {
     const options = { ...reduction, assignment: true };
     const onProgress = this.#report(signal);
     try {
-      const mesh = await reconstruct(scan.cloud, { ...surface, reduce: options, distances: true, signal, onProgress });
+      const mesh = await reconstruct(scan.cloud, { ...surface, reduce: options, ...REMEMBERED, distances: true, signal, onProgress });
       return { scan, reduced: mesh.cloud, mesh };
     } catch (error) {
       if (signal.aborted || !NO_SURFACE.has(/** @type {any} */ (error).code)) throw error;

@@ -73,6 +73,21 @@ export const WORDS = {
     text: 'That should not have happened, and your scan was not changed.',
     advice: DEFECT,
   },
+  'bad-index': {
+    title: 'The triangles of this mesh do not fit its points',
+    text: 'One of them has a corner that does not exist.',
+    advice: 'Export the file again.',
+  },
+  'needs-triangles': {
+    title: 'This format is for meshes alone',
+    text: 'Points without triangles cannot be saved in it.',
+    advice: 'Choose another format.',
+  },
+  'missing-package': {
+    title: 'A part of the program is missing',
+    text: 'The page was built without something that this needs.',
+    advice: DEFECT,
+  },
   'not-found': {
     title: 'The scan could not be fetched',
     text: 'The address of this page asks for a file that did not arrive.',
