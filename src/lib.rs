@@ -96,5 +96,6 @@ pub mod wasm;
 pub use cloud::Cloud;
 pub use error::{Error, Result};
 pub use params::{ReduceParams, SurfaceParams};
-pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect, reconstruct, reduce, reduce_owned};
+pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect};
+pub use pipeline::{reconstruct, reconstruct_owned, reduce, reduce_owned};
 pub use progress::{Progress, Stage};

@@ -19,6 +19,17 @@ pub enum Target {
     Flatness(f64),
 }
 
+impl Target {
+    /// How many of `n` points it keeps, where that does not hang on the surface.
+    pub fn count(self, n: usize) -> Option<usize> {
+        match self {
+            Target::Ratio(ratio) => Some(((n as f64 * ratio).round() as usize).clamp(1, n)),
+            Target::Count(count) => Some(count.min(n)),
+            Target::Tolerance(_) | Target::Flatness(_) => None,
+        }
+    }
+}
+
 /// Which reduction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]

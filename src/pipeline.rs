@@ -42,7 +42,7 @@ pub struct Surface {
     pub colors: Option<Vec<[u8; 3]>>,
     /// One value a vertex for each scalar of the cloud.
     pub attributes: Vec<Attribute>,
-    /// The points that the surface was fitted to, with oriented normals.
+    /// The points that the surface was fitted to, with oriented normals; without their `shares`.
     pub cloud: ReducedCloud,
     /// Where they were asked for.
     pub distances: Option<Distances>,
@@ -179,13 +179,51 @@ pub fn reconstruct(
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<Surface> {
+    reconstruct_input(Cow::Borrowed(cloud), params, progress)
+}
+
+/// [`reconstruct`] of a cloud that nobody needs any more.
+///
+/// # Errors
+/// The same.
+pub fn reconstruct_owned(
+    cloud: Cloud,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
+    reconstruct_input(Cow::Owned(cloud), params, progress)
+}
+
+fn reconstruct_input(
+    cloud: Cow<Cloud>,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
     params.validate()?;
-    check_surface(cloud, params)?;
+    check_surface(&cloud, params)?;
     let mut clock = Clock::new(progress);
-    let input = Input::new(Cow::Borrowed(cloud), outliers(params), &mut clock)?;
-    check_extent(&input)?;
-    let fitted = points_to_fit(&input, params, &mut clock)?;
-    surface(&input, fitted, params, clock)
+    let Input {
+        cloud,
+        tree,
+        features,
+        origin,
+    } = Input::new(cloud, outliers(params), &mut clock)?;
+    check_extent(&features)?;
+    let noise = features.noise;
+    let fitted = points_to_fit(&cloud, &tree, features, params, &mut clock)?;
+    drop(cloud);
+    let order = if params.distances {
+        tree.order.clone()
+    } else {
+        Vec::new()
+    };
+    let input = Measured {
+        points: tree.into_points(),
+        order,
+        noise,
+        origin,
+    };
+    surface(input, fitted, params, clock)
 }
 
 /// What is remembered of a cloud from one call to the next.
@@ -196,7 +234,7 @@ pub struct Memory {
     fitted: Option<(Option<ReduceParams>, (Reduced, Vec<Vec3>))>,
 }
 
-/// [`reconstruct`] that does not do again what the call before has done for the same cloud, to the same bytes: the
+/// [`reconstruct_owned`] that does not do again what the call before has done for the same cloud, to the same bytes: the
 /// measurements, and the reduction where its options are the same too. Stages that were not run have no time in the
 /// report. Costs about 200 bytes a point until the memory is dropped or another cloud comes.
 ///
@@ -221,50 +259,59 @@ pub fn reconstruct_again(
             Input::new(Cow::Owned(cloud), outliers(params), &mut clock)?
         }
     };
-    check_extent(&input)?;
+    let Input {
+        cloud,
+        tree,
+        features,
+        origin,
+    } = &input;
+    check_extent(features)?;
     let fitted = match memory.fitted.take() {
         Some((reduce, fitted)) if reduce == params.reduce => fitted,
-        _ => points_to_fit(&input, params, &mut clock)?,
+        _ => points_to_fit(cloud, tree, features.clone(), params, &mut clock)?,
     };
-    let made = surface(&input, fitted.clone(), params, clock);
+    let measured = Measured {
+        points: tree.points.clone(),
+        order: tree.order.clone(),
+        noise: features.noise,
+        origin: origin.clone(),
+    };
     if whole {
-        memory.fitted = Some((params.reduce.clone(), fitted));
+        memory.fitted = Some((params.reduce.clone(), fitted.clone()));
         memory.input = Some(input);
     }
-    made
+    surface(measured, fitted, params, clock)
+}
+
+/// What a surface needs of the input, once it was reduced.
+struct Measured {
+    points: Vec<Vec3>,
+    /// Where each point is in the cloud; empty where nobody asks.
+    order: Vec<u32>,
+    noise: f32,
+    origin: Origin,
 }
 
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
-    input: &Input,
+    input: Measured,
     (mut reduced, positions): (Reduced, Vec<Vec3>),
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
-    let Input {
-        tree,
-        features,
+    let Measured {
+        points: input,
+        order,
+        noise,
         origin,
-        ..
     } = input;
-    let (sites, site_of) = sites(
-        &reduced,
-        &positions,
-        features.noise,
-        params.orient,
-        &mut clock,
-    )?;
+    let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
+    drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
-    let input_of = (&tree.points[..], stands_for);
-    let fits = fit::fit(
-        subdomains,
-        &sites,
-        input_of,
-        features.noise,
-        params,
-        &mut clock,
-    )?;
+    let input_of = (&input[..], stands_for);
+    let fits = fit::fit(subdomains, &sites, input_of, noise, params, &mut clock)?;
+    reduced.shares = Vec::new();
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
@@ -288,11 +335,11 @@ fn surface(
         &reduced.cloud,
         &carried.unwrap_or_default(),
     );
-    let apart = mesh_distances(&tree.points, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
     let distances = params.distances.then(|| {
         let mut points = vec![f32::NAN; origin.given];
-        for (&i, apart) in tree.order.iter().zip(&apart) {
+        for (&i, apart) in order.iter().zip(&apart) {
             points[origin.callers(i) as usize] = apart.distance as f32;
         }
         Distances {
@@ -302,7 +349,7 @@ fn surface(
     });
     drop(apart);
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
-    let report = reduce_report((origin, features.noise), &reduced, distance, &clock);
+    let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
@@ -315,7 +362,7 @@ fn surface(
         genus: topology.genus,
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
-        beyond_accuracy: beyond as f64 / tree.points.len() as f64,
+        beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
     };
     let cloud = ReducedCloud { reduced, report };
@@ -394,7 +441,7 @@ struct Input<'a> {
 }
 
 /// Where the points of an [`Input`] come from.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Origin {
     /// Points that the caller gave.
     given: usize,
@@ -522,8 +569,8 @@ fn outliers(params: &SurfaceParams) -> Outliers {
 }
 
 /// Points that span something.
-fn check_extent(input: &Input) -> Result<()> {
-    if input.features.normals.iter().any(|&n| n != Vec3::ZERO) {
+fn check_extent(features: &Features) -> Result<()> {
+    if features.normals.iter().any(|&n| n != Vec3::ZERO) {
         return Ok(());
     }
     let found = "all points lie on one line or at one place".into();
@@ -574,23 +621,32 @@ fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
     }
 }
 
-/// The reduced cloud that surfaces are fitted to.
+/// The reduced cloud that surfaces are fitted to, and where its points are for that.
 fn points_to_fit(
-    input: &Input,
+    cloud: &Cloud,
+    tree: &Octree,
+    mut features: Features,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<(Reduced, Vec<Vec3>)> {
-    let Input {
-        cloud,
-        tree,
-        features,
-        ..
-    } = input;
+    let n = tree.points.len();
+    let is_few = |count: usize| count < MIN_REDUCED.min(n);
     if let Some(params) = &params.reduce {
-        let reduced = reduce::reduce(cloud, tree, features.clone(), params, progress)?;
-        if reduced.cloud.len() >= MIN_REDUCED.min(tree.points.len()) {
-            let positions = reduced.cloud.points.clone();
-            return Ok((reduced, positions));
+        let count = params.target.count(n);
+        if !count.is_some_and(is_few) {
+            // The validity index may choose fewer centres, and a tolerance or a flatness any number: then the features are
+            // asked again.
+            let spare = count
+                .is_none_or(|count| count < 2 * MIN_REDUCED)
+                .then(|| features.clone());
+            let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
+            match spare {
+                Some(spare) if is_few(reduced.cloud.len()) => features = spare,
+                _ => {
+                    let positions = reduced.cloud.points.clone();
+                    return Ok((reduced, positions));
+                }
+            }
         }
     }
     let all = ReduceParams {
@@ -598,12 +654,12 @@ fn points_to_fit(
         assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
         ..Default::default()
     };
-    let mut reduced = reduce::reduce(cloud, tree, features.clone(), &all, progress)?;
+    let positions = (0..n).map(|i| features.denoised(tree, i)).collect();
+    let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    let denoised = |i| features.denoised(tree, i);
-    Ok((reduced, (0..tree.points.len()).map(denoised).collect()))
+    Ok((reduced, positions))
 }
 
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for

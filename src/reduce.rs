@@ -194,19 +194,15 @@ struct Arrangement {
 impl Job<'_> {
     /// What to do, and why it is not what was asked for, where it is not.
     fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal, String)> {
-        let n = self.tree.points.len();
-        let count = match self.params.target {
-            Target::Ratio(ratio) => ((n as f64 * ratio).round() as usize).clamp(1, n),
-            Target::Count(count) => count.min(n),
-            Target::Flatness(_) => return Ok((Goal::Flatness, String::new())),
-            Target::Tolerance(tolerance) => {
-                let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
-                return Ok((self.within(tolerance, progress)?, reason));
-            }
-        };
-        let goal = match self.params.method {
-            Method::Paper => Goal::Count(count),
-            Method::Adaptive => {
+        if let Target::Tolerance(tolerance) = self.params.target {
+            let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
+            return Ok((self.within(tolerance, progress)?, reason));
+        }
+        let count = self.params.target.count(self.tree.points.len());
+        let goal = match (count, self.params.method) {
+            (None, _) => Goal::Flatness,
+            (Some(count), Method::Paper) => Goal::Count(count),
+            (Some(count), Method::Adaptive) => {
                 let alpha = self.params.curvature_weight;
                 let density = Density::new(self.tree, &self.features, count, alpha);
                 Goal::Density(count, density)

@@ -81,7 +81,7 @@ pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsRes
 /// What is remembered for the next call that has `keep`.
 static MEMORY: Mutex<Option<pipeline::Memory>> = Mutex::new(None);
 
-/// [`pipeline::reconstruct`], or where `keep` is true [`pipeline::reconstruct_again`].
+/// [`pipeline::reconstruct_owned`], or where `keep` is true [`pipeline::reconstruct_again`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
     let params: SurfaceParams = from_js(options)?;
@@ -97,7 +97,7 @@ pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> 
         let memory = memory.get_or_insert_default();
         pipeline::reconstruct_again(input, &params, memory, &mut progress)?
     } else {
-        pipeline::reconstruct(&input, &params, &mut progress)?
+        pipeline::reconstruct_owned(input, &params, &mut progress)?
     };
     sign(&mut surface.report.reduce);
     sign(&mut surface.cloud.report);
