@@ -138,7 +138,7 @@ export interface ReconstructOptions {
   distances?: boolean;
   /**
    * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
-   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 200
+   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
    * bytes a point until a call without it, another cloud or an abort. Default `false`.
    */
   keep?: boolean;

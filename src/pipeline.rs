@@ -236,7 +236,7 @@ pub struct Memory {
 
 /// [`reconstruct_owned`] that does not do again what the call before has done for the same cloud, to the same bytes: the
 /// measurements, and the reduction where its options are the same too. Stages that were not run have no time in the
-/// report. Costs about 200 bytes a point until the memory is dropped or another cloud comes.
+/// report. Costs about 100 bytes a point until the memory is dropped or another cloud comes.
 ///
 /// # Errors
 /// Those of [`reconstruct`].

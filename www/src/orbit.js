@@ -49,6 +49,7 @@ export class Orbit {
   #outline = new Float32Array();
   /** @type {Flight | null} */
   #flight = null;
+  #updating = false;
 
   /**
    * @param {import('three').PerspectiveCamera} camera
@@ -65,7 +66,10 @@ export class Orbit {
     this.#controls.maxDistance = 12;
     this.#controls.zoomSpeed = 1.4;
     this.#controls.addEventListener('start', () => (this.#flight = null));
-    this.#controls.addEventListener('change', changed);
+    // What moves while a picture is made is in that picture; only a movement that dies away needs another.
+    this.#controls.addEventListener('change', () => {
+      if (!this.#updating || this.#controls.enableDamping) changed();
+    });
     const follow = () => (this.#controls.enableDamping = !this.#calm.matches);
     this.#calm.addEventListener('change', follow);
     follow();
@@ -143,7 +147,9 @@ export class Orbit {
   /** Goes on with a movement under way; called once before each picture. */
   update() {
     if (this.#flight) this.#fly(this.#flight);
+    this.#updating = true;
     this.#controls.update();
+    this.#updating = false;
     const distance = this.#camera.position.length();
     this.#camera.near = this.#parallel ? distance - 1 : Math.max(distance * 0.005, distance - 1);
     this.#camera.far = distance + 1;
