@@ -1,25 +1,21 @@
 // For everybody: axe finds nothing, whatever is open; the keyboard is enough; old browsers are told why.
 
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import { PATIENCE, start } from './browser.mjs';
 import { spherePoints, toXyz } from './scans.mjs';
 
-const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+const AXE = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const small = toXyz(spherePoints(1500));
 
 /** What axe holds against the page as it is now. */
 async function violations({ page }) {
   // The page's own policy forbids scripts of others; the debugger may add one.
-  if (!(await page.evaluate(() => 'axe' in globalThis))) await page.evaluate(await axeSource());
+  if (!(await page.evaluate(() => 'axe' in globalThis))) await page.evaluate(AXE);
   const found = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
   return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
-}
-
-async function axeSource() {
-  const { readFile } = await import('node:fs/promises');
-  return readFile(AXE, 'utf8');
 }
 
 for (const colorScheme of ['light', 'dark']) {
@@ -53,7 +49,7 @@ test('with the keyboard alone: choose a sample, settings, a view, save', { timeo
   const site = await server.open({}, undefined, `?src=${server.serve('ball.xyz', small)}`);
   const { page } = site;
   await site.opened('ball.xyz');
-  const focus = () => page.evaluate(() => document.activeElement?.id || document.activeElement?.parentElement?.id || document.activeElement?.getAttribute('data-sample'));
+  const focus = () => page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.parentElement?.id);
   const tabTo = async (id) => {
     for (let k = 0; k < 60; k++) {
       if ((await focus()) === id) return;

@@ -129,9 +129,11 @@ test('views and colours of a sphere whose left half is rough', { timeout: PATIEN
 
   await t.test('one draw call a layer, and nothing is sent to the GPU while the camera turns', async () => {
     await site.paint('natural');
+    const debug = await page.context().newCDPSession(page);
     const turn = async () => {
       await page.focus('#canvas');
-      return page.evaluate(async () => {
+      await debug.send('HeapProfiler.startSampling', { samplingInterval: 256 });
+      const counted = await page.evaluate(async () => {
         const before = { ...globalThis.gpu };
         for (let k = 0; k < 6; k++) {
           const canvas = document.querySelector('canvas');
@@ -140,6 +142,13 @@ test('views and colours of a sphere whose left half is rough', { timeout: PATIEN
         }
         return { draws: (globalThis.gpu.draws - before.draws) / 6, uploads: globalThis.gpu.uploads - before.uploads };
       });
+      const { profile } = await debug.send('HeapProfiler.stopSampling');
+      const bytes = (node) => node.selfSize + node.children.reduce((sum, child) => sum + bytes(child), 0);
+      const inPage = (node) => (node.callFrame.url.includes('/assets/') ? bytes(node) : node.children.reduce((sum, child) => sum + inPage(child), 0));
+      const kilobytes = inPage(profile.head) / 6 / 1000;
+      t.diagnostic(`${kilobytes.toFixed(1)} kB of objects a picture`);
+      assert.ok(kilobytes < 4, 'no array is made anew for a picture');
+      return counted;
     };
     // Clouds take a second pass over the screen, for the depth.
     for (const [view, draws] of [['points', 2], ['reduced', 2], ['mesh', 1], ['compare', 4]]) {

@@ -7,9 +7,11 @@ import { CONTROLS } from '../../www/src/settings.js';
 import { PATIENCE, start } from './browser.mjs';
 import { spherePoints, toPly } from './scans.mjs';
 
-const POINTS = 6000;
-/** A bowl, open above: one border. */
-const bowl = spherePoints(2 * POINTS).filter(([, , z]) => z < 0).slice(0, POINTS);
+/** A shallow bowl, open above: one border. */
+const RIM = -0.4;
+const bowl = spherePoints(20_000).filter(([, , z]) => z < RIM);
+const WIDTH = 2 * Math.sqrt(1 - RIM ** 2);
+const DIAGONAL = Math.hypot(WIDTH, WIDTH, 1 + RIM);
 
 test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
   const server = await start(t);
@@ -19,16 +21,15 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
   await site.opened('bowl.ply');
   const hash = () => page.evaluate(() => location.hash);
   const stages = () => page.$$eval('#stages data', (rows) => rows.map((row) => row.dataset.stage));
-  const { count } = { count: bowl.length };
+  const count = bowl.length;
 
   await t.test('numbers: what came out of how much', async () => {
     assert.equal(await site.number('outputPoints'), Math.round(count / 4));
     assert.equal(await site.number('reduction'), Math.round(count / 4) / count);
     assert.equal(await site.number('holes'), 1);
     assert.ok((await site.number('boundaryEdges')) > 20);
-    const diagonal = Math.hypot(2, 2, 1);
     const [error, share] = [await site.number('errorRms'), await site.number('errorRmsShare')];
-    assert.ok(Math.abs(error / share / diagonal - 1) < 0.02, 'in file units and of the diagonal');
+    assert.ok(Math.abs(error / share / DIAGONAL - 1) < 0.02, 'in file units and of the diagonal');
 
     await page.click('#made > summary');
     await page.click('#copy-json');
@@ -73,7 +74,7 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     assert.equal(await site.number('outputPoints'), 777);
     await site.remade(() => page.selectOption('#target-kind', 'ratio'));
     await site.remade(() => page.selectOption('#target-kind', 'tolerance'));
-    assert.match(await page.innerText('#keep-count'), /within 0\.003/);
+    assert.match(await page.innerText('#keep-count'), new RegExp(`within ${(1e-3 * DIAGONAL).toPrecision(3)}`));
     const within = await site.number('outputPoints');
     await site.remade(() => page.fill('#keep-field', '1'));
     assert.ok((await site.number('outputPoints')) < within, 'ten times the tolerance, fewer points');

@@ -93,8 +93,8 @@ export class Saving {
   #row(/** @type {What} */ what, /** @type {string} */ name, /** @type {string} */ use, /** @type {number} */ size) {
     const row = element('li');
     const button = element('button', { type: 'button', className: 'format', id: `save-${what}-${name}` });
-    button.ariaLabel = `Save the ${NAMES[what].toLowerCase()} as ${name.toUpperCase()}, ${format.bytes(size)}: ${use}`;
     button.append(
+      element('span', { className: 'visually-hidden', textContent: `Save the ${NAMES[what].toLowerCase()} as ` }),
       element('strong', { textContent: name.toUpperCase() }),
       element('span', { textContent: use }),
       element('data', { textContent: format.bytes(size), value: String(size) }),
