@@ -79,6 +79,7 @@ const REDUCE = {
   maxDepth: integer(1, 21, 21),
   attributes: rule(`an object of attribute names, each with ${CARRY.expected}`, acceptsAttributes, {}),
   assignment: flag(false),
+  cells: flag(false),
   outliers: choice('keep', 'drop'),
 };
 

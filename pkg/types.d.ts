@@ -105,6 +105,8 @@ export interface ReduceOptions {
   attributes?: Record<string, Carry>;
   /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
   assignment?: boolean;
+  /** Say where the sub-domains of the octree are ({@link ReducedCloud.cells}). Default `false`. */
+  cells?: boolean;
   /**
    * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
    * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
@@ -113,7 +115,10 @@ export interface ReduceOptions {
 }
 
 export interface ReconstructOptions {
-  /** How the cloud is reduced first; `false` sends every point to the fit. Default {@link ReduceOptions}' defaults. */
+  /**
+   * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
+   * {@link ReduceOptions}' defaults.
+   */
   reduce?: ReduceOptions | false;
   /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
   accuracy?: number;
@@ -203,6 +208,8 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
    * for an outlier that was dropped.
    */
   assignment?: Uint32Array;
+  /** With `cells`, six numbers a sub-domain: the lowest x y z of its input points, and the highest. */
+  cells?: Positions;
   report: ReduceReport;
 }
 

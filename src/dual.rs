@@ -33,6 +33,8 @@ const LONGEST_STEP: f64 = 0.5;
 const BRICKS_PER_SLICE: usize = 64;
 /// Quads that one index of a parallel map takes.
 const QUADS_PER_TASK: usize = 4096;
+/// Quads that one parallel map takes.
+const QUADS_PER_SLICE: usize = 1 << 18;
 
 /// A crossed cell.
 #[derive(Clone, Copy)]
@@ -80,12 +82,12 @@ pub(crate) struct Dual {
 /// Makes the dual mesh of the crossed cells.
 pub(crate) fn build<F: Implicit>(
     field: &F,
-    lattice: &Lattice,
+    lattice: Lattice,
     sharp: bool,
     progress: &mut dyn FnMut(f32) -> Result<()>,
 ) -> Result<Dual> {
-    let cells = Cells::new(lattice);
-    let mut vertices = Vec::new();
+    let cells = Cells::new(&lattice);
+    let mut vertices = Vec::with_capacity(cells.vertices);
     for slice in cells.order.chunks(BRICKS_PER_SLICE) {
         let placed = par::map(
             slice.len(),
@@ -95,12 +97,13 @@ pub(crate) fn build<F: Implicit>(
         placed.into_iter().for_each(|v| vertices.extend(v));
         progress(0.7 * vertices.len() as f32 / cells.vertices as f32)?;
     }
-    let quads = par::map(
+    // A closed surface has about as many.
+    let mut quads = par::flat_map(
         cells.order.len(),
+        cells.vertices,
         || (),
         |k, ()| cells.quads(cells.order[k]),
     );
-    let mut quads: Vec<Quad> = quads.into_iter().flatten().collect();
     if sharp {
         let on_crease = creases::mark(&vertices, &quads);
         let mut done = 0;
@@ -118,19 +121,17 @@ pub(crate) fn build<F: Implicit>(
             progress(0.7 + 0.2 * done as f32 / cells.order.len() as f32)?;
         }
     }
-    let tasks = quads.len().div_ceil(QUADS_PER_TASK);
-    let cut = par::map(
-        tasks,
-        || (),
-        |k, ()| {
-            let range = k * QUADS_PER_TASK..((k + 1) * QUADS_PER_TASK).min(quads.len());
-            quads[range]
-                .iter()
-                .map(|&q| choose_diagonal(q, &vertices))
-                .collect::<Vec<_>>()
-        },
-    );
-    quads = cut.into_iter().flatten().collect();
+    drop(cells);
+    drop(lattice);
+    for slice in quads.chunks_mut(QUADS_PER_SLICE) {
+        let tasks: Vec<&[Quad]> = slice.chunks(QUADS_PER_TASK).collect();
+        let choose = |k: usize| {
+            let all = tasks[k].iter();
+            all.map(|&q| choose_diagonal(q, &vertices)).collect()
+        };
+        let cut: Vec<Vec<Quad>> = par::map(tasks.len(), || (), |k, ()| choose(k));
+        slice.copy_from_slice(&cut.concat());
+    }
     progress(1.0)?;
     Ok(Dual { vertices, quads })
 }
@@ -195,8 +196,9 @@ impl<'a> Cells<'a> {
             first[b as usize] = count;
             count += lattice.bricks[b as usize].crossed.len() as u32;
         }
-        let cells = par::map(
+        let cells = par::flat_map(
             order.len(),
+            count as usize,
             || (),
             |k, ()| {
                 let crossed = &lattice.bricks[order[k] as usize].crossed;
@@ -206,7 +208,6 @@ impl<'a> Cells<'a> {
                     .collect::<Vec<_>>()
             },
         );
-        let cells = cells.into_iter().flatten().collect();
         let mut result = Cells {
             lattice,
             table: LoopTable::new(),

@@ -14,7 +14,7 @@ use crate::params::Boundary;
 use crate::progress::Progress;
 use crate::rims;
 use crate::simplify::simplify;
-use crate::trim::{decide_holes, drop_phantoms, split_bow_ties, summarise, trim_rims};
+use crate::trim::{decide_holes, degrees, drop_phantoms, split_bow_ties, summarise, trim_rims};
 use glam::{DVec3, Vec3};
 
 /// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
@@ -120,19 +120,18 @@ pub fn extract<F: Implicit>(
         params.boundary,
         &mut span(progress, 0.0, 0.4),
     )?;
-    let mut dual = build(
-        field,
-        &lattice,
-        params.sharp,
-        &mut span(progress, 0.4, 0.75),
-    )?;
+    let mut dual = build(field, lattice, params.sharp, &mut span(progress, 0.4, 0.75))?;
     decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points, reach);
     let (filled, closed, open) = summarise(&dual);
-    let (mut mesh, on_crease) = triangulate(dual);
-    rims::smooth(&mut mesh);
+    let Triangulated {
+        mut mesh,
+        on_crease,
+        at_end,
+    } = triangulate(dual);
+    rims::smooth(&mut mesh, &at_end);
     let mut span = span(progress, 0.75, 1.0);
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
@@ -146,48 +145,56 @@ pub fn extract<F: Implicit>(
     })
 }
 
-/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'. Says
-/// of each vertex whether it is on a crease.
-fn triangulate(dual: Dual) -> (Mesh, Vec<bool>) {
+/// A mesh, and which of its vertices are on creases, and at an end of the surface.
+struct Triangulated {
+    mesh: Mesh,
+    on_crease: Vec<bool>,
+    at_end: Vec<bool>,
+}
+
+/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
+fn triangulate(dual: Dual) -> Triangulated {
+    let degree = degrees(&dual);
     let mut index = vec![u32::MAX; dual.vertices.len()];
-    dual.quads
-        .iter()
-        .flat_map(|q| q.vertices)
-        .for_each(|v| index[v as usize] = 0);
+    let used = degree.iter().filter(|&&quads| quads > 0).count();
     let mut mesh = Mesh {
+        vertices: Vec::with_capacity(used),
+        normals: Vec::with_capacity(used),
         triangles: Vec::with_capacity(2 * dual.quads.len()),
-        ..Mesh::default()
     };
-    let mut on_crease = Vec::new();
-    for (vertex, index) in dual
-        .vertices
-        .iter()
-        .zip(&mut index)
-        .filter(|(_, index)| **index == 0)
-    {
+    let (mut on_crease, mut at_end) = (Vec::with_capacity(used), Vec::with_capacity(used));
+    let vertices = dual.vertices.iter().zip(degree).zip(&mut index);
+    for ((vertex, quads), index) in vertices.filter(|((_, quads), _)| *quads > 0) {
         *index = mesh.vertices.len() as u32;
         mesh.vertices.push(vertex.position);
         mesh.normals.push(vertex.normal);
         on_crease.push(vertex.sharp);
+        at_end.push(quads < vertex.degree);
     }
     for quad in &dual.quads {
         let [p, q, r, s] = quad.vertices.map(|v| index[v as usize]);
         mesh.triangles.extend([[p, q, r], [p, r, s]]);
     }
+    if mesh.normals.contains(&Vec3::ZERO) {
+        fill_normals(&mut mesh);
+    }
+    Triangulated {
+        mesh,
+        on_crease,
+        at_end,
+    }
+}
+
+/// Gives the vertices without a normal the mean of their triangles'.
+fn fill_normals(mesh: &mut Mesh) {
     let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
-        triangle
-            .iter()
-            .for_each(|&v| sums[v as usize] += (b - a).cross(c - a));
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&v| sums[v as usize] += normal);
     }
-    for (normal, sum) in mesh
-        .normals
-        .iter_mut()
-        .zip(sums)
-        .filter(|(n, _)| **n == Vec3::ZERO)
-    {
+    let missing = mesh.normals.iter_mut().zip(sums);
+    for (normal, sum) in missing.filter(|(n, _)| **n == Vec3::ZERO) {
         *normal = sum.normalize_or(DVec3::Z).as_vec3();
     }
-    (mesh, on_crease)
 }

@@ -155,7 +155,9 @@ fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
 /// All edges, sorted by (a, b).
 fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
     let n_sites = sites.tree.points.len();
-    let mut samples: Vec<Sample> = Vec::new();
+    // Lists are made as long as they get: grown by doubling they would be the largest that a surface needs.
+    let supports = fits.subdomains.iter().map(|s| s.support.len()).sum();
+    let mut samples: Vec<Sample> = Vec::with_capacity(supports);
     let mut owner = vec![u32::MAX; n_sites];
     for (s, subdomain) in fits.subdomains.iter().enumerate() {
         samples.extend(
@@ -170,26 +172,31 @@ fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
             .for_each(|&i| owner[i as usize] = s as u32);
     }
     samples.sort_unstable_by_key(|&(site, s, _)| (site, s));
+    let groups = || samples.chunk_by(|x, y| x.0 == y.0);
+    let shared: usize = groups().map(|g| g.len() * (g.len() - 1) / 2).sum();
+    let neighbors = || {
+        let all = (0..n_sites as u32).flat_map(|i| sites.graph.of(i).iter().map(move |&j| (i, j)));
+        all.filter_map(|(i, j)| {
+            let (a, b) = (owner[i as usize], owner[j as usize]);
+            (a != b && a.max(b) != u32::MAX).then_some((i, j, a.min(b), a.max(b)))
+        })
+    };
     // What every pair says: (a, b, agreement).
-    let mut said: Vec<(u32, u32, f32)> = Vec::new();
-    for group in samples.chunk_by(|x, y| x.0 == y.0) {
+    let mut said: Vec<(u32, u32, f32)> = Vec::with_capacity(shared + neighbors().count());
+    for group in groups() {
         for (k, &(_, a, ga)) in group.iter().enumerate() {
             said.extend(group[k + 1..].iter().map(|&(_, b, gb)| (a, b, ga.dot(gb))));
         }
     }
+    drop(samples);
     let unsigned = vec![1.0; fits.subdomains.len()];
     let normals = site_normals(fits, sites, gradients, &unsigned);
     let blur2 = BLUR * sites.noise * sites.noise;
-    for i in 0..n_sites as u32 {
-        for &j in sites.graph.of(i) {
-            let (a, b) = (owner[i as usize], owner[j as usize]);
-            if a != b && a != u32::MAX && b != u32::MAX {
-                let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
-                let stand = dipoles(d, normals[i as usize], normals[j as usize], blur2);
-                said.push((a.min(b), a.max(b), DIPOLES * stand));
-            }
-        }
-    }
+    said.extend(neighbors().map(|(i, j, a, b)| {
+        let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
+        let stand = dipoles(d, normals[i as usize], normals[j as usize], blur2);
+        (a, b, DIPOLES * stand)
+    }));
     said.sort_unstable_by(|x, y| (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2)));
     let size = |s: u32| fits.subdomains[s as usize].support.len();
     said.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))

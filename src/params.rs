@@ -135,6 +135,8 @@ pub struct ReduceParams {
     pub attributes: BTreeMap<String, Carry>,
     /// Say of every input point which reduced point it belongs to most. Default `false`.
     pub assignment: bool,
+    /// Say where the sub-domains of the octree are. Default `false`.
+    pub cells: bool,
     /// Points far from all others and small clumps of them. Where some are dropped, the diagonal that lengths are fractions
     /// of is that of the others. Default: keep.
     pub outliers: Outliers,
@@ -157,6 +159,7 @@ impl Default for ReduceParams {
             max_depth: 21,
             attributes: BTreeMap::new(),
             assignment: false,
+            cells: false,
             outliers: Outliers::Keep,
         }
     }

@@ -652,6 +652,7 @@ fn points_to_fit(
     let all = ReduceParams {
         target: Target::Ratio(1.0),
         assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
+        cells: params.reduce.as_ref().is_some_and(|r| r.cells),
         ..Default::default()
     };
     let positions = (0..n).map(|i| features.denoised(tree, i)).collect();

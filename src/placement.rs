@@ -351,7 +351,14 @@ pub(crate) fn majority<T: Copy + PartialEq>(
     votes: impl Iterator<Item = (T, f32)>,
     order: fn(&T, &T) -> Ordering,
 ) -> Option<T> {
-    let mut votes: Vec<(T, f32)> = votes.collect();
+    most_of(votes.collect(), order)
+}
+
+/// Apart from [`majority`], so that the sort is compiled once for each type of values and not for each kind of iterator.
+fn most_of<T: Copy + PartialEq>(
+    mut votes: Vec<(T, f32)>,
+    order: fn(&T, &T) -> Ordering,
+) -> Option<T> {
     votes.sort_by(|a, b| order(&a.0, &b.0));
     let mut most = None;
     for same in votes.chunk_by(|a, b| a.0 == b.0) {

@@ -9,9 +9,9 @@ const SWEEPS: usize = 6;
 const LEAST_QUALITY: f64 = 0.03;
 
 /// Moves vertices of the rim halfway between their neighbours on it, along the surface, as long as no triangle turns by
-/// more than 60° or gets thin.
-pub(crate) fn smooth(mesh: &mut Mesh) {
-    let rim = rim(mesh);
+/// more than 60° or gets thin. `at_end` says which vertices may be on it.
+pub(crate) fn smooth(mesh: &mut Mesh, at_end: &[bool]) {
+    let rim = rim(mesh, at_end);
     if rim.is_empty() {
         return;
     }
@@ -59,16 +59,16 @@ struct End {
 }
 
 /// The rim's vertices in ascending order. In a manifold mesh each has one boundary edge in and one out.
-fn rim(mesh: &Mesh) -> Vec<End> {
+fn rim(mesh: &Mesh, at_end: &[bool]) -> Vec<End> {
     let edges = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
     // Inner edges occur in both directions, boundary edges in one.
-    let mut sorted: Vec<(u32, u32, bool)> = Vec::with_capacity(3 * mesh.triangles.len());
-    sorted.extend(
-        mesh.triangles
-            .iter()
-            .flat_map(edges)
-            .map(|(a, b)| (a.min(b), a.max(b), a < b)),
-    );
+    let mut sorted: Vec<(u32, u32, bool)> = mesh
+        .triangles
+        .iter()
+        .flat_map(edges)
+        .filter(|&(a, b)| at_end[a as usize] && at_end[b as usize])
+        .map(|(a, b)| (a.min(b), a.max(b), a < b))
+        .collect();
     sorted.sort_unstable();
     let boundary = sorted
         .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))

@@ -86,7 +86,7 @@ fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
 }
 
 /// Quads around each vertex.
-fn degrees(dual: &Dual) -> Vec<u8> {
+pub(crate) fn degrees(dual: &Dual) -> Vec<u8> {
     let mut degrees = vec![0; dual.vertices.len()];
     dual.quads
         .iter()

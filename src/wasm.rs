@@ -287,6 +287,12 @@ fn reduced_to_js(result: &ReducedCloud, precision: Precision) -> JsResult {
             "assignment",
             optional(&reduced.assignment, |a| Uint32Array::from(&a[..])),
         ),
+        (
+            "cells",
+            reduced.cells.as_ref().map_or(JsValue::UNDEFINED, |cells| {
+                positions_to_js(cells.as_flattened(), cloud, precision)
+            }),
+        ),
         ("report", to_js(&result.report)?),
     ])?;
     attach(fields, &cloud.attributes, cloud.origin)

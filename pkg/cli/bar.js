@@ -28,7 +28,7 @@ export class Bar {
     const full = Math.round(CELLS * overall);
     const percent = `${Math.floor(100 * overall)}`.padStart(3);
     const line = `${'█'.repeat(full)}${'░'.repeat(CELLS - full)} ${percent} %  ${stage.padEnd(8)}  ${this.#label}`;
-    this.#stream.write(`\r${line.slice(0, (this.#stream.columns ?? 80) - 1)}\x1b[K`);
+    this.#stream.write(`\r${line.slice(0, (this.#stream.columns || 80) - 1)}\x1b[K`);
   }
 
   clear() {

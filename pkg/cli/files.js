@@ -1,6 +1,6 @@
 /** Files in, files out. A result is there whole or not at all. */
 import { randomUUID } from 'node:crypto';
-import { readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
+import { mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { addAbortSignal } from 'node:stream';
 import { buffer } from 'node:stream/consumers';
@@ -9,6 +9,7 @@ import { buffer } from 'node:stream/consumers';
 const MEANINGS = {
   ENOENT: 'there is no such file or folder',
   EISDIR: 'it is a folder',
+  EEXIST: 'a file has that name',
   ENOTDIR: 'a part of the path is no folder',
   EACCES: 'access is not allowed',
   EPERM: 'access is not allowed',
@@ -21,8 +22,30 @@ const MEANINGS = {
  * @param {AbortSignal} signal
  * @returns {Promise<Uint8Array>}
  */
-export async function readInput(input, signal) {
-  return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : readFile(input, { signal });
+export function readInput(input, signal) {
+  return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : explained('', readFile(input, { signal }));
+}
+
+/**
+ * Whether there is a folder for the result: known before the work, not after it.
+ * @param {string} output
+ */
+export async function checkPlace(output) {
+  await explained(`'${output}' cannot be written: `, stat(dirname(output)));
+}
+
+/** @param {string} folder */
+export async function makeFolder(folder) {
+  await explained(`'${folder}' cannot be made: `, mkdir(folder, { recursive: true }));
+}
+
+/**
+ * @param {string} output
+ * @param {Uint8Array} bytes
+ * @param {AbortSignal} signal
+ */
+export async function writeOutput(output, bytes, signal) {
+  await explained(`'${output}' cannot be written: `, replace(output, bytes, signal));
 }
 
 /**
@@ -32,7 +55,7 @@ export async function readInput(input, signal) {
  * @param {Uint8Array} bytes
  * @param {AbortSignal} signal
  */
-export async function writeOutput(output, bytes, signal) {
+async function replace(output, bytes, signal) {
   const there = await stat(output).catch(() => undefined);
   if (there && !there.isFile()) return writeFile(output, bytes, { signal });
   const target = there ? await realpath(output) : output;
@@ -58,11 +81,24 @@ export async function sameFile(a, b) {
 }
 
 /**
+ * What a promise gives, or the system's error in words and with its code.
+ * @template T
+ * @param {string} what
+ * @param {Promise<T>} promise
+ */
+async function explained(what, promise) {
+  try {
+    return await promise;
+  } catch (error) {
+    const { code = '', message } = /** @type {NodeJS.ErrnoException} */ (error);
+    throw Object.assign(new Error(what + (MEANINGS[code] ?? message)), { code });
+  }
+}
+
+/**
  * One line that says what went wrong.
  * @param {unknown} error
  */
 export function sentence(error) {
-  if (!(error instanceof Error)) return String(error);
-  const { code = '' } = /** @type {NodeJS.ErrnoException} */ (error);
-  return MEANINGS[code] ?? error.message.replace(/\s*\n\s*/g, ' ');
+  return error instanceof Error ? error.message.replace(/\s*\n\s*/g, ' ') : String(error);
 }

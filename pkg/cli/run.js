@@ -1,10 +1,8 @@
 /** Does what the command line asks for, one file after the other. */
-import { mkdir, stat } from 'node:fs/promises';
-import { dirname } from 'node:path';
 import { createEngine } from '../index.node.js';
 import { PointweaveError, toRecord } from '../errors.js';
 import { Bar } from './bar.js';
-import { readInput, sameFile, sentence, writeOutput } from './files.js';
+import { checkPlace, makeFolder, readInput, sameFile, sentence, writeOutput } from './files.js';
 import { UsageError } from './usage.js';
 import { infoLines, reportLine } from './words.js';
 
@@ -20,7 +18,7 @@ import { infoLines, reportLine } from './words.js';
  */
 export async function run(task, signal) {
   await checkOutputs(task.jobs);
-  if (task.folder) await mkdir(task.folder, { recursive: true });
+  if (task.folder) await makeFolder(task.folder);
   // A worker in any case: this thread has to hear Ctrl-C.
   const engine = await createEngine({ threads: task.threads, worker: true });
   /** @type {Outcome[]} */
@@ -82,7 +80,7 @@ async function attempt(engine, task, job, done, signal) {
  */
 async function perform(engine, { command, own, write, format }, { input, output }, watch) {
   const { signal } = watch;
-  if (output !== undefined && output !== '-') await stat(dirname(output)); // before the work, not after it
+  if (output !== undefined && output !== '-') await checkPlace(output);
   const name = input === '-' ? undefined : input;
   const cloud = await engine.read(await readInput(input, signal), { name, signal, transfer: true });
   if (command === 'inspect') {

@@ -5,13 +5,13 @@
 /** @param {number} count */
 const whole = (count) => count.toLocaleString('en-US');
 /** @param {number} value */
-const short = (value) => String(Number(value.toPrecision(6)));
+const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
 
 /** @param {ReduceReport | SurfaceReport} report */
 export function reportLine(report) {
   const { inputPoints, outputPoints, distance, totalMs } = report;
   const mesh = 'triangles' in report ? ` → ${whole(report.triangles)} triangles` : '';
-  const error = `${short(100 * distance.rms)} % of the diagonal rms`;
+  const error = `${short(100 * distance.rms, 2)} % of the diagonal off (rms)`;
   return `${whole(inputPoints)} → ${whole(outputPoints)} points${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s`;
 }
 
@@ -20,7 +20,9 @@ export function reportLine(report) {
  * @param {PointCloud} cloud
  */
 export function infoLines(info, { colors, normals, attributes = {}, origin }) {
-  const corner = (/** @type {number[]} */ values) => values.map(short).join(' ');
+  // To a millionth of the diagonal, however far away the cloud is.
+  const decimals = Math.min(Math.max(6 - Math.floor(Math.log10(info.diagonal || 1)), 0), 20);
+  const corner = (/** @type {number[]} */ values) => values.map((x) => Number(x.toFixed(decimals))).join(' ');
   const also = [colors && 'colours', normals && 'normals', ...Object.keys(attributes)].filter(Boolean).join(', ');
   const rows = [
     ['points', whole(info.count)],

@@ -127,6 +127,22 @@ test('every input point is assigned to a reduced point', async () => {
   }
 });
 
+test('the sub-domains are boxes that hold every point', async () => {
+  const cloud = sphere(3000, { center: [100, 0, 0] });
+  assert.equal((await reduce(cloud)).cells, undefined);
+  for (const method of ['adaptive', 'paper']) {
+    const { cells, report } = await reduce(cloud, { method, cells: true });
+    assert.ok(cells instanceof Float32Array && cells.length === 6 * report.cells && report.cells > 4);
+    const holds = (k, i) => [0, 1, 2].every((axis) => {
+      const value = cloud.positions[3 * i + axis];
+      return cells[6 * k + axis] - 1e-4 <= value && value <= cells[6 * k + 3 + axis] + 1e-4;
+    });
+    for (let i = 0; i < 3000; i += 7) {
+      assert.ok(Array.from({ length: report.cells }, (_, k) => k).some((k) => holds(k, i)), `${method}: point ${i}`);
+    }
+  }
+});
+
 test('a map of the distances adds up to the report, point by point and on the vertices', async () => {
   const clean = sphere(3000);
   const cloud = { positions: Float32Array.of(9, 0, 0, ...clean.positions) };

@@ -12,16 +12,18 @@ import { fileURLToPath } from 'node:url';
 import { validateBytes } from 'gltf-validator';
 import { inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { parse } from '../../pkg/cli/arguments.js';
+import { writeOutput } from '../../pkg/cli/files.js';
 import { WORDS } from '../../pkg/cli/help.js';
 import { UsageError } from '../../pkg/cli/usage.js';
 import { TABLES, TARGETS } from '../../pkg/options.js';
 import { openPage } from './browser.mjs';
+import { rejection } from './support.mjs';
 
 const CLI = fileURLToPath(new URL('../../pkg/cli.js', import.meta.url));
 /** Makes a program think that a person looks at its messages. */
 const TERMINAL = ['--import', 'data:text/javascript,process.stderr.isTTY=true;process.stderr.columns=70'];
 
-const scan = await sample('duck', { count: 3000, seed: 5 });
+const scan = await sample('duck', { count: 1500, seed: 5 });
 const scanFile = await write(scan, { format: 'ply' });
 const cloud = await read(scanFile);
 
@@ -62,7 +64,7 @@ test('a file of every format, to the bytes of the package', async (t) => {
     const { stdout, stderr } = await good(path, ['reconstruct', 'scan.ply', '-o', `mesh.${format}`]);
     assert.deepEqual(readFileSync(join(path, `mesh.${format}`)), Buffer.from(await write(mesh, { format })), format);
     assert.equal(stdout.length, 0);
-    assert.match(stderr, /^pointweave: scan\.ply → mesh\.\w+: 3,000 → 1,000 points → [\d,]+ triangles, .*\n$/);
+    assert.match(stderr, /^pointweave: scan\.ply → mesh\.\w+: 1,500 → 500 points → [\d,]+ triangles, .*\n$/);
     if (format === 'stl') continue;
     await good(path, ['reduce', 'scan.ply', '--out', `light.${format.toUpperCase()}`, '--count', '700', '--threads', '1']);
     assert.deepEqual(readFileSync(join(path, `light.${format.toUpperCase()}`)), Buffer.from(await write(light, { format })), format);
@@ -92,19 +94,21 @@ test('--json prints the report and nothing else', async (t) => {
   const report = JSON.parse(stdout);
   const { report: expected } = await reconstruct(cloud, { reduce: false });
   assert.deepEqual(Object.keys(report), Object.keys(expected));
-  assert.deepEqual([report.triangles, report.outputPoints, report.distance], [expected.triangles, 3000, expected.distance]);
+  assert.deepEqual([report.triangles, report.outputPoints, report.distance], [expected.triangles, 1500, expected.distance]);
   assert.equal(stderr, '');
   assert.ok(statSync(join(path, 'mesh.ply')).size > 10_000);
 
   const alone = await good(path, ['reduce', 'scan.ply', '--json', '--ratio', '0.1']);
-  assert.equal(JSON.parse(alone.stdout).outputPoints, 300);
+  assert.equal(JSON.parse(alone.stdout).outputPoints, 150);
   const info = await good(path, ['inspect', 'scan.ply', '--json']);
   assert.deepEqual(JSON.parse(info.stdout), await inspect(cloud));
 });
 
 test('inspect tells it in words', async (t) => {
+  const far = await good(folder(t), ['inspect', '-'], '4512345.125 -543210.5 100\n4512346.125 -543211.5 101.0009766\n');
+  assert.match(String(far.stdout), /lowest corner +4512345\.125 -543211\.5 100\n.*highest corner +4512346\.125 -543210\.5 101\.000977\n/);
   const { stdout } = await good(folder(t), ['inspect', 'scan.ply']);
-  for (const said of [/^scan\.ply\n/, /points +3,000\n/, /not finite +0\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
+  for (const said of [/^scan\.ply\n/, /points +1,500\n/, /not finite +0\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
 });
 
 test('standard input and standard output', async (t) => {
@@ -117,7 +121,7 @@ test('standard input and standard output', async (t) => {
 
 test('many files: one that is bad does not stop the others', async (t) => {
   const path = folder(t);
-  writeFileSync(join(path, 'broken.ply'), scanFile.subarray(0, 5000));
+  writeFileSync(join(path, 'broken.ply'), scanFile.subarray(0, 3000));
   writeFileSync(join(path, 'last.xyz'), await write(scan, { format: 'xyz' }));
   const files = ['scan.ply', 'broken.ply', 'nowhere.ply', 'last.xyz'];
   const { code, stdout, stderr } = await run(path, ['reduce', ...files, '--out-dir', 'out/light', '--format', 'glb', '--json']);
@@ -129,7 +133,7 @@ test('many files: one that is bad does not stop the others', async (t) => {
   assert.equal(lines[2], 'pointweave: 2 of 4 files done, 2 failed');
   const entries = JSON.parse(stdout);
   assert.deepEqual(entries.map(({ input }) => input), files);
-  assert.deepEqual(entries.map(({ error, report }) => error?.code ?? report.outputPoints), [1000, 'bad-file', 'ENOENT', 1000]);
+  assert.deepEqual(entries.map(({ error, report }) => error?.code ?? report.outputPoints), [500, 'bad-file', 'ENOENT', 500]);
   assert.deepEqual(readdirSync(join(path, 'out/light')).sort(), ['last.glb', 'scan.glb']);
   assert.equal(entries[3].output, join('out/light', 'last.glb'));
 
@@ -147,7 +151,8 @@ test('what fails has exit code 1 and one line', async (t) => {
     [['inspect', '.'], /\.: it is a folder/],
     [['inspect', 'note.txt'], /note\.txt: .+/],
     [['reconstruct', 'three.xyz', '-o', 'mesh.ply'], /three\.xyz: 3 points are too few: at least 4 are needed/],
-    [['reduce', 'scan.ply', '-o', 'missing/light.ply'], /scan\.ply: there is no such file or folder/],
+    [['reduce', 'scan.ply', '-o', 'missing/light.ply'], /scan\.ply: 'missing\/light\.ply' cannot be written: there is no such file or folder/],
+    [['reduce', 'scan.ply', '--out-dir', 'scan.ply'], /'scan\.ply' cannot be made: a file has that name/],
     [['reduce', 'scan.ply', '-o', 'light.ply', '--attributes', 'nothing=majority'], /option attributes/],
     [['inspect', 'nowhere.ply', '--json'], /there is no such file/],
   ];
@@ -227,6 +232,19 @@ test('an earlier result is replaced, through a link; a device is written to', as
   assert.match(readFileSync(join(path, 'old.xyz'), 'utf8'), /^# x y z .*\n(.+\n){9}$/);
   assert.ok(statSync(join(path, 'null.xyz')).isCharacterDevice());
   assert.deepEqual(readdirSync(path).sort(), ['link.xyz', 'null.xyz', 'old.xyz', 'scan.ply']);
+});
+
+test('a result that is not written to its end leaves what was there', async (t) => {
+  const path = folder(t);
+  const interrupted = new AbortController();
+  const bytes = new Uint8Array(1 << 27);
+  const writing = rejection(writeOutput(join(path, 'scan.ply'), bytes, interrupted.signal));
+  for (let tries = 0; readdirSync(path).length < 2 && tries < 5000; tries++) await new Promise((resolve) => setTimeout(resolve));
+  assert.match(readdirSync(path).join(), /^\.pointweave-.*\.part,scan\.ply$/, 'it is being written');
+  interrupted.abort();
+  assert.equal((await writing).code, 'ABORT_ERR');
+  assert.deepEqual(readdirSync(path), ['scan.ply']);
+  assert.deepEqual(readFileSync(join(path, 'scan.ply')), Buffer.from(scanFile));
 });
 
 test('Ctrl-C ends the work and leaves no file', async (t) => {

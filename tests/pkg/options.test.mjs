@@ -143,6 +143,7 @@ test('Rust has the same ranges', async () => {
       ['attributes', [[{}, true], [{ height: 'mean', colors: 'majority' }, true], [{ height: 'nearest' }, true],
         [{ height: 'other' }, false], [{ depth: 'mean' }, false], ['mean', false]]],
       ['assignment', [[true, true], [false, true], [1, false]]],
+      ['cells', [[true, true], [1, false]]],
       ...[['method', ['adaptive', 'paper']], ['norm', ['euclidean', 'diagonal', 'mahalanobis']],
         ['clusters', ['proportional', 'validity']], ['placement', ['implicit', 'mesh', 'center', 'sample']],
         ['outliers', ['keep', 'drop']]]

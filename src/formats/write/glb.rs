@@ -41,7 +41,7 @@ pub(super) fn write(
     let mut file = File::default();
     let mut attributes = Vec::new();
     let mut attribute = |name: &str, accessor: usize| {
-        attributes.push(format!("{}:{accessor}", quoted(name)));
+        attributes.push(format!("\"{name}\":{accessor}"));
     };
 
     let grid = quantize.then(|| Grid::over(&local.positions));
@@ -333,7 +333,7 @@ fn linear(component: u8) -> u16 {
     (linear * f64::from(u16::MAX)).round() as u16
 }
 
-/// `_NAME` for each attribute: upper case letters, digits and underscores, no name twice.
+/// `_NAME` for each attribute: upper case letters, digits and underscores, which need no escapes; no name twice.
 fn names(attributes: &[Attribute]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for Attribute { name, .. } in attributes {
@@ -352,11 +352,6 @@ fn names(attributes: &[Attribute]) -> Vec<String> {
         names.push(word);
     }
     names
-}
-
-/// These names need no escapes.
-fn quoted(name: &str) -> String {
-    format!("\"{name}\"")
 }
 
 fn check_finite(array: &str, values: &[f32], each: usize) -> Result<()> {
