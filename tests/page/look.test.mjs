@@ -162,6 +162,12 @@ test('views and colours of a sphere whose left half is rough', { timeout: PATIEN
     assert.ok(difference(plain, await site.picture()) > 0.02, 'the edges are seen');
     assert.deepEqual(await turn(), { draws: 2, uploads: 0 }, 'mesh with its edges');
     await page.keyboard.press('e');
+
+    await page.keyboard.press('b');
+    await site.settled();
+    assert.ok(difference(plain, await site.picture()) > 0.01, 'the boxes of the octree are seen');
+    assert.deepEqual(await turn(), { draws: 2, uploads: 0 }, 'mesh with boxes');
+    await page.keyboard.press('b');
   });
 
   assert.deepEqual(site.faults, []);

@@ -87,7 +87,7 @@ export class App {
     ];
     const showHelp = helpDialog(describeKeys(keys));
     byId('help-open', HTMLButtonElement).addEventListener('click', showHelp);
-    listenToKeys(byId('stage', HTMLElement), keys);
+    listenToKeys(keys);
   }
 
   #enter(/** @type {State} */ state) {

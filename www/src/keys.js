@@ -3,24 +3,21 @@
  * @typedef {{ key: string, also?: string[], shown?: string, does?: string, act: () => void }} Key
  */
 
+/** What takes letters itself. */
+const TYPING = 'input:not([type="checkbox"], [type="radio"], [type="range"]), textarea, select, dialog';
+
 /**
- * Keys for the picture. They act while the picture or nothing in particular has the focus, so that typing and
- * other controls keep theirs.
- * @param {HTMLElement} stage
+ * Keys for the picture. Arrows act while the picture has the focus, the others wherever nobody types.
  * @param {Key[]} keys  by KeyboardEvent.key, letters in lower case
  */
-export function listenToKeys(stage, keys) {
+export function listenToKeys(keys) {
   const actions = new Map(keys.flatMap(({ key, also = [], act }) => [key, ...also].map((name) => [name, act])));
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const focus = document.activeElement;
-    const onPicture = focus instanceof HTMLCanvasElement;
-    const typing = focus instanceof HTMLSelectElement || focus instanceof HTMLDialogElement || focus?.closest('dialog');
-    const free = focus === null || focus === document.body || (stage.contains(focus) && !typing);
-    const moves = event.key.startsWith('Arrow');
-    if (!(moves ? onPicture : free)) return;
+    const heard = event.key.startsWith('Arrow') ? focus instanceof HTMLCanvasElement : !focus?.closest(TYPING);
     const act = actions.get(event.key.length === 1 ? event.key.toLowerCase() : event.key);
-    if (!act) return;
+    if (!act || !heard) return;
     event.preventDefault();
     act();
   });

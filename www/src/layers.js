@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points } from 'three';
 import { typicalSpacing } from './density.js';
 import { toFrame } from './frame.js';
-import { edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
+import { boxMaterial, edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
 
 /** @import { Frame } from './frame.js' */
 
@@ -72,6 +72,34 @@ export function edgeLayer(/** @type {Layer} */ mesh) {
   layer.frustumCulled = false;
   return layer;
 }
+
+/**
+ * Boxes, given by their lowest and highest corners, as lines.
+ * @param {{ positions: Float32Array | Float64Array, origin?: [number, number, number] }} corners
+ * @param {Frame} frame
+ */
+export function boxLayer(corners, frame) {
+  const ends = toFrame(corners, frame);
+  const boxes = ends.length / 6;
+  const points = new Float32Array(24 * boxes);
+  const lines = new Uint32Array(24 * boxes);
+  for (let k = 0; k < boxes; k++) {
+    for (let corner = 0; corner < 8; corner++) {
+      // Bit by bit: whether the corner is high along x, y and z.
+      for (let axis = 0; axis < 3; axis++) points[24 * k + 3 * corner + axis] = ends[6 * k + axis + ((corner >> axis) & 1 ? 3 : 0)];
+    }
+    BOX_EDGES.forEach((corner, i) => (lines[24 * k + i] = 8 * k + corner));
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(points, 3));
+  geometry.setIndex(new BufferAttribute(lines, 1));
+  const layer = new LineSegments(geometry, boxMaterial());
+  layer.frustumCulled = false;
+  return layer;
+}
+
+/** Corners that differ in one direction alone. */
+const BOX_EDGES = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
 /**
  * Gives a layer colours, one sRGB triple a point or vertex, or takes them away. Those of measured values are to be

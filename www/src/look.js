@@ -28,6 +28,7 @@ export class Look {
   #paints = byId('paints', HTMLElement);
   #edges = byId('edges', HTMLInputElement);
   #parallel = byId('parallel', HTMLInputElement);
+  #boxes = byId('boxes', HTMLInputElement);
   /** @type {Scan | null} */
   #scan = null;
   /** @type {Outcome | null} */
@@ -60,6 +61,7 @@ export class Look {
     this.#views.addEventListener('change', (event) => this.#choose(/** @type {Choice} */ (valueOf(event))));
     this.#paints.addEventListener('change', (event) => this.#choosePaint(/** @type {PaintName} */ (valueOf(event))));
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
+    this.#boxes.addEventListener('change', () => this.#showBoxes());
     this.#parallel.addEventListener('change', () => viewer?.orbit.setParallel(this.#parallel.checked));
     for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-side]'))) {
       button.addEventListener('click', () => this.#lookFrom(/** @type {Side} */ (button.dataset.side)));
@@ -97,6 +99,7 @@ export class Look {
     this.#viewer?.set('mesh', mesh);
     for (const view of VIEWS) radio('view', view).disabled = view === 'mesh' && !mesh;
     this.#split.offerMesh(Boolean(mesh));
+    this.#showBoxes();
     this.#settle();
   }
 
@@ -108,6 +111,7 @@ export class Look {
       ...VIEWS.map((view, i) => ({ key: String(i + 1), does: NAMES[view], act: () => this.#chooseByKey(view) })),
       { key: 'c', does: 'Next colours', act: () => this.#nextPaint() },
       { key: 'e', does: 'Edges of the triangles', act: () => this.#edges.click() },
+      { key: 'b', does: 'Boxes of the octree', act: () => this.#boxes.click() },
       { key: 'f', does: 'Fit the view', act: () => orbit?.fit() },
       { key: 'u', does: 'Turn another side up', act: () => this.#turnUp() },
       { key: 'v', shown: 'V R T', does: 'Look from the front, the right, the top', act: from('front') },
@@ -193,6 +197,12 @@ export class Look {
       input.disabled = !isPossible(name, subject);
       input.checked = name === this.#paint;
     }
+  }
+
+  /** The octree's sub-domains, where they are asked for. */
+  #showBoxes() {
+    const { cells, origin } = this.#outcome?.reduced ?? {};
+    this.#viewer?.showBoxes(this.#boxes.checked && cells ? { positions: cells, origin } : null);
   }
 
   get #subject() {

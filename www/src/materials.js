@@ -37,6 +37,11 @@ export function edgeMaterial() {
   return new LineBasicMaterial({ transparent: true, opacity: 0.42, depthWrite: false });
 }
 
+/** Boxes around parts of the scan: opaque, as the depth pass of the clouds wants it. */
+export function boxMaterial() {
+  return new LineBasicMaterial();
+}
+
 /**
  * Points as round dots whose size follows the distance. With oriented normals they are shaded, and those on
  * the far side fade into the background; without, the depth pass (eye-dome.js) gives them shape. Colours go

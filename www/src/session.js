@@ -178,7 +178,7 @@ export class Session extends EventTarget {
   /** @returns {Promise<Outcome>} */
   async #make(/** @type {Scan} */ scan, /** @type {AbortSignal} */ signal) {
     const { reduce: reduction, surface } = this.settings.options(this.target);
-    const options = { ...reduction, assignment: true };
+    const options = { ...reduction, assignment: true, cells: true };
     const onProgress = this.#report(signal);
     try {
       const mesh = await reconstruct(scan.cloud, { ...surface, reduce: options, ...REMEMBERED, distances: true, signal, onProgress });

@@ -1,7 +1,7 @@
 import { Group, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { EyeDome } from './eye-dome.js';
 import { toFrame } from './frame.js';
-import { cloudLayer, disposeLayer, edgeLayer, isPainted, meshLayer, paint } from './layers.js';
+import { boxLayer, cloudLayer, disposeLayer, edgeLayer, isPainted, meshLayer, paint } from './layers.js';
 import { Orbit } from './orbit.js';
 
 /**
@@ -41,6 +41,8 @@ export class Viewer {
   /** Edges of the mesh's triangles, once they were asked for. @type {import('three').LineSegments | null} */
   #edges = null;
   #edgesShown = false;
+  /** Boxes over every view. @type {import('three').LineSegments | null} */
+  #boxes = null;
   /** @type {Shown} */
   #shown = { view: 'points' };
 
@@ -69,6 +71,7 @@ export class Viewer {
   /** Starts over with a new scan: forgets the layers of the old one, and fits the view. */
   open(/** @type {Drawable} */ cloud, /** @type {Frame} */ frame) {
     for (const view of /** @type {View[]} */ (['points', 'reduced', 'mesh'])) this.set(view, null);
+    this.showBoxes(null);
     this.#frame = frame;
     this.set('points', { ...cloud, normals: undefined });
     this.#resize();
@@ -116,6 +119,18 @@ export class Viewer {
     this.#ask();
   }
 
+  /** Draws boxes over all views, given by their lowest and highest corners, or no longer. */
+  showBoxes(/** @type {import('./frame.js').Placed | null} */ corners) {
+    if (this.#boxes) {
+      this.#root.remove(this.#boxes);
+      disposeLayer(this.#boxes);
+    }
+    this.#boxes = corners && this.#frame && boxLayer(corners, this.#frame);
+    if (this.#boxes) this.#root.add(this.#boxes);
+    this.#dress();
+    this.#ask();
+  }
+
   setTheme(/** @type {Theme} */ theme) {
     this.#theme = theme;
     this.#dress();
@@ -148,6 +163,7 @@ export class Viewer {
       }
     }
     if (this.#edges) /** @type {any} */ (this.#edges.material).color.set(this.#theme.edges);
+    if (this.#boxes) /** @type {any} */ (this.#boxes.material).color.set(this.#theme.boxes);
   }
 
   #resize() {
