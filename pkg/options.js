@@ -79,6 +79,7 @@ const REDUCE = {
   maxDepth: integer(1, 21, 21),
   attributes: rule(`an object of attribute names, each with ${CARRY.expected}`, acceptsAttributes, {}),
   assignment: flag(false),
+  cells: flag(false),
   outliers: choice('keep', 'drop'),
 };
 
@@ -92,6 +93,8 @@ const RECONSTRUCT = {
   resolution: number(1e-4, 0.25, { or: 'auto', fallback: 'auto' }),
   sharp: flag(true),
   boundary: choice('auto', 'closed', 'open'),
+  distances: flag(false),
+  keep: flag(false),
 };
 
 const READ = {

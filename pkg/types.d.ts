@@ -105,6 +105,8 @@ export interface ReduceOptions {
   attributes?: Record<string, Carry>;
   /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
   assignment?: boolean;
+  /** Say where the sub-domains of the octree are ({@link ReducedCloud.cells}). Default `false`. */
+  cells?: boolean;
   /**
    * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
    * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
@@ -137,6 +139,14 @@ export interface ReconstructOptions {
   sharp?: boolean;
   /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
   boundary?: 'auto' | 'closed' | 'open';
+  /** Say of every input point and every vertex how far scan and mesh are apart there ({@link SurfaceMesh.distances}). Default `false`. */
+  distances?: boolean;
+  /**
+   * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
+   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
+   * bytes a point until a call without it, another cloud or an abort. Default `false`.
+   */
+  keep?: boolean;
 }
 
 /** Distances as fractions. */
@@ -198,6 +208,8 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
    * for an outlier that was dropped.
    */
   assignment?: Uint32Array;
+  /** With `cells`, six numbers a sub-domain: the lowest x y z of its input points, and the highest. */
+  cells?: Positions;
   report: ReduceReport;
 }
 
@@ -232,6 +244,13 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   origin?: [number, number, number];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
+  /** With `distances`, fractions: for a map of the error. */
+  distances?: {
+    /** One entry an input point, its distance to the mesh; NaN for an outlier that was dropped. */
+    points: Float32Array;
+    /** One entry a vertex: the mean over the points nearest to its triangles; NaN where the mesh spans a place without points. */
+    vertices: Float32Array;
+  };
   report: SurfaceReport;
 }
 

@@ -133,19 +133,28 @@ pub fn closest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     a + (ab * vb + ac * vc) / (va + vb + vc)
 }
 
-/// Distances of `points` to a mesh (all in the unit frame); zeros where there is no triangle. Fastest where points that
+/// How far a point is from a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Apart {
+    /// Distance to the nearest triangle.
+    pub distance: f64,
+    /// That triangle.
+    pub triangle: u32,
+}
+
+/// Distances of `points` to a mesh (all in the unit frame); none where there is no triangle. Fastest where points that
 /// follow each other are near each other, as in an octree's order.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`] if `progress` asks for it.
-pub fn mesh_distance(
+pub fn mesh_distances(
     points: &[Vec3],
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
     progress: &mut dyn Progress,
-) -> Result<DistanceStats> {
+) -> Result<Vec<Apart>> {
     if triangles.is_empty() {
-        return Ok(DistanceStats::default());
+        return Ok(Vec::new());
     }
     let tree = TriangleTree::new(vertices, triangles);
     by_task(
@@ -156,19 +165,51 @@ pub fn mesh_distance(
         |point, hint| {
             let (distance2, triangle) = tree.closest(point, *hint);
             *hint = triangle;
-            distance2.sqrt()
+            Apart {
+                distance: distance2.sqrt(),
+                triangle,
+            }
         },
     )
 }
 
-/// Statistics of `distance` over the points, in parallel; `weight` is about how many microseconds a point takes.
-fn by_task<S>(
+/// Statistics of [`mesh_distances`]; zeros where there is no triangle.
+///
+/// # Errors
+/// The same.
+pub fn mesh_distance(
+    points: &[Vec3],
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    progress: &mut dyn Progress,
+) -> Result<DistanceStats> {
+    let apart = mesh_distances(points, vertices, triangles, progress)?;
+    Ok(DistanceStats::of(apart.iter().map(|a| a.distance)))
+}
+
+/// At every vertex, the mean distance of the points whose nearest triangle has it as a corner; NaN where there is none.
+pub fn vertex_distances(apart: &[Apart], triangles: &[[u32; 3]], vertices: usize) -> Vec<f32> {
+    let mut sums = vec![(0.0, 0u32); vertices];
+    for Apart { distance, triangle } in apart {
+        for corner in triangles[*triangle as usize] {
+            let (sum, count) = &mut sums[corner as usize];
+            *sum += distance;
+            *count += 1;
+        }
+    }
+    sums.into_iter()
+        .map(|(sum, count)| (sum / f64::from(count)) as f32)
+        .collect()
+}
+
+/// `distance` of every point, in parallel; `weight` is about how many microseconds a point takes.
+fn by_task<S, T: Send>(
     points: &[Vec3],
     weight: f32,
     progress: &mut dyn Progress,
     scratch: impl Fn() -> S + Sync + Send,
-    distance: impl Fn(Vec3, &mut S) -> f64 + Sync + Send,
-) -> Result<DistanceStats> {
+    distance: impl Fn(Vec3, &mut S) -> T + Sync + Send,
+) -> Result<Vec<T>> {
     let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
     let weight = weight * POINTS_PER_TASK as f32;
     let distances = par::map_progress(
@@ -180,8 +221,8 @@ fn by_task<S>(
             tasks[k]
                 .iter()
                 .map(|&point| distance(point, scratch))
-                .collect::<Vec<f64>>()
+                .collect::<Vec<T>>()
         },
     )?;
-    Ok(DistanceStats::of(distances.into_iter().flatten()))
+    Ok(distances.into_iter().flatten().collect())
 }

@@ -123,7 +123,7 @@ pub fn cluster(
         centers,
         shares,
         spacing: features.spacing.iter().map(|s| s * shrink).collect(),
-        cells: cells.len(),
+        cells,
         iterations,
         kept,
     };

@@ -135,6 +135,8 @@ pub struct ReduceParams {
     pub attributes: BTreeMap<String, Carry>,
     /// Say of every input point which reduced point it belongs to most. Default `false`.
     pub assignment: bool,
+    /// Say where the sub-domains of the octree are. Default `false`.
+    pub cells: bool,
     /// Points far from all others and small clumps of them. Where some are dropped, the diagonal that lengths are fractions
     /// of is that of the others. Default: keep.
     pub outliers: Outliers,
@@ -157,6 +159,7 @@ impl Default for ReduceParams {
             max_depth: 21,
             attributes: BTreeMap::new(),
             assignment: false,
+            cells: false,
             outliers: Outliers::Keep,
         }
     }
@@ -243,6 +246,11 @@ pub struct SurfaceParams {
     pub sharp: bool,
     /// Default: auto.
     pub boundary: Boundary,
+    /// Say of every input point and every vertex how far scan and mesh are apart there. Default `false`.
+    pub distances: bool,
+    /// For [`crate::pipeline::reconstruct_again`]: remember what was measured of the cloud and its reduction. Default
+    /// `false`.
+    pub keep: bool,
 }
 
 impl Default for SurfaceParams {
@@ -257,6 +265,8 @@ impl Default for SurfaceParams {
             resolution: Resolution::Auto,
             sharp: true,
             boundary: Boundary::Auto,
+            distances: false,
+            keep: false,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::attach::attach;
 use crate::cells::{self, Sites};
 use crate::cloud::{Attribute, Cloud};
-use crate::distance::mesh_distance;
+use crate::distance::{mesh_distances, vertex_distances};
 use crate::error::{Error, Result};
 use crate::extract::{ExtractParams, Mesh, extract};
 use crate::features::{self, Features};
@@ -44,8 +44,19 @@ pub struct Surface {
     pub attributes: Vec<Attribute>,
     /// The points that the surface was fitted to, with oriented normals; without their `shares`.
     pub cloud: ReducedCloud,
+    /// Where they were asked for.
+    pub distances: Option<Distances>,
     /// Counts, distances, topology, times.
     pub report: SurfaceReport,
+}
+
+/// How far scan and mesh are apart, place by place, as fractions of the diagonal.
+#[derive(Debug, Clone)]
+pub struct Distances {
+    /// Of every input point, in the input's order, to the mesh; NaN for one that was dropped.
+    pub points: Vec<f32>,
+    /// At every vertex, the mean of the points that are nearest to its triangles; NaN where there are none.
+    pub vertices: Vec<f32>,
 }
 
 impl Surface {
@@ -191,24 +202,109 @@ fn reconstruct_input(
     params.validate()?;
     check_surface(&cloud, params)?;
     let mut clock = Clock::new(progress);
-    let outliers = params
-        .reduce
-        .as_ref()
-        .map_or(Outliers::Keep, |r| r.outliers);
     let Input {
         cloud,
         tree,
         features,
         origin,
-    } = Input::new(cloud, outliers, &mut clock)?;
-    if features.normals.iter().all(|&n| n == Vec3::ZERO) {
-        let found = "all points lie on one line or at one place".into();
-        return Err(Error::Degenerate { found });
-    }
+    } = Input::new(cloud, outliers(params), &mut clock)?;
+    check_extent(&features)?;
     let noise = features.noise;
-    let (mut reduced, positions) = points_to_fit(&cloud, &tree, features, params, &mut clock)?;
+    let fitted = points_to_fit(&cloud, &tree, features, params, &mut clock)?;
     drop(cloud);
-    let input = tree.into_points();
+    let order = if params.distances {
+        tree.order.clone()
+    } else {
+        Vec::new()
+    };
+    let input = Measured {
+        points: tree.into_points(),
+        order,
+        noise,
+        origin,
+    };
+    surface(input, fitted, params, clock)
+}
+
+/// What is remembered of a cloud from one call to the next.
+#[derive(Debug, Default)]
+pub struct Memory {
+    input: Option<Input<'static>>,
+    /// How it was reduced, and what came out.
+    fitted: Option<(Option<ReduceParams>, (Reduced, Vec<Vec3>))>,
+}
+
+/// [`reconstruct_owned`] that does not do again what the call before has done for the same cloud, to the same bytes: the
+/// measurements, and the reduction where its options are the same too. Stages that were not run have no time in the
+/// report. Costs about 100 bytes a point until the memory is dropped or another cloud comes.
+///
+/// # Errors
+/// Those of [`reconstruct`].
+pub fn reconstruct_again(
+    cloud: Cloud,
+    params: &SurfaceParams,
+    memory: &mut Memory,
+    progress: &mut dyn Progress,
+) -> Result<Surface> {
+    params.validate()?;
+    check_surface(&cloud, params)?;
+    let mut clock = Clock::new(progress);
+    // Without its strays a cloud is another one than the caller hands over.
+    let whole = outliers(params) == Outliers::Keep;
+    let known = |input: &Input| whole && input.is_of(&cloud);
+    let input = match memory.input.take().filter(known) {
+        Some(input) => input,
+        None => {
+            memory.fitted = None;
+            Input::new(Cow::Owned(cloud), outliers(params), &mut clock)?
+        }
+    };
+    let Input {
+        cloud,
+        tree,
+        features,
+        origin,
+    } = &input;
+    check_extent(features)?;
+    let fitted = match memory.fitted.take() {
+        Some((reduce, fitted)) if reduce == params.reduce => fitted,
+        _ => points_to_fit(cloud, tree, features.clone(), params, &mut clock)?,
+    };
+    let measured = Measured {
+        points: tree.points.clone(),
+        order: tree.order.clone(),
+        noise: features.noise,
+        origin: origin.clone(),
+    };
+    if whole {
+        memory.fitted = Some((params.reduce.clone(), fitted.clone()));
+        memory.input = Some(input);
+    }
+    surface(measured, fitted, params, clock)
+}
+
+/// What a surface needs of the input, once it was reduced.
+struct Measured {
+    points: Vec<Vec3>,
+    /// Where each point is in the cloud; empty where nobody asks.
+    order: Vec<u32>,
+    noise: f32,
+    origin: Origin,
+}
+
+/// The surface through the reduced cloud, at `positions`.
+fn surface(
+    input: Measured,
+    (mut reduced, positions): (Reduced, Vec<Vec3>),
+    params: &SurfaceParams,
+    mut clock: Clock,
+) -> Result<Surface> {
+    let Measured {
+        points: input,
+        order,
+        noise,
+        origin,
+    } = input;
     let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
     drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
@@ -239,7 +335,19 @@ fn reconstruct_input(
         &reduced.cloud,
         &carried.unwrap_or_default(),
     );
-    let distance = mesh_distance(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
+    let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
+    let distances = params.distances.then(|| {
+        let mut points = vec![f32::NAN; origin.given];
+        for (&i, apart) in order.iter().zip(&apart) {
+            points[origin.callers(i) as usize] = apart.distance as f32;
+        }
+        Distances {
+            points,
+            vertices: vertex_distances(&apart, &mesh.triangles, mesh.vertices.len()),
+        }
+    });
+    drop(apart);
     let topology = report::topology(&mesh.triangles, mesh.vertices.len());
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
@@ -264,6 +372,7 @@ fn reconstruct_input(
         colors,
         attributes,
         cloud,
+        distances,
         report: surface_report,
     })
 }
@@ -323,6 +432,7 @@ fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Featur
 }
 
 /// What a reduction is made of: the caller's points, or those that are not isolated.
+#[derive(Debug)]
 struct Input<'a> {
     /// Without points where nobody else owns them: the tree has them.
     cloud: Cow<'a, Cloud>,
@@ -332,6 +442,7 @@ struct Input<'a> {
 }
 
 /// Where the points of an [`Input`] come from.
+#[derive(Debug, Clone)]
 struct Origin {
     /// Points that the caller gave.
     given: usize,
@@ -402,10 +513,38 @@ impl<'a> Input<'a> {
     }
 }
 
+impl Input<'_> {
+    /// Whether this was measured of these very points, colours and whatever else there is.
+    fn is_of(&self, cloud: &Cloud) -> bool {
+        let Cloud {
+            points,
+            frame,
+            colors,
+            normals,
+            attributes,
+            origin,
+        } = cloud;
+        let (of, tree) = (&self.cloud, &self.tree);
+        let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
+        self.origin.kept.is_none()
+            && tree.points.len() == points.len()
+            && (of.frame, of.origin) == (*frame, *origin)
+            && tree.points.iter().zip(&tree.order).all(place)
+            && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+    }
+}
+
 impl Origin {
     /// How many points were dropped.
     fn dropped(&self) -> usize {
         self.kept.as_ref().map_or(0, |kept| self.given - kept.len())
+    }
+
+    /// The caller's index of a point of this cloud.
+    fn callers(&self, point: u32) -> u32 {
+        self.kept
+            .as_ref()
+            .map_or(point, |kept| kept[point as usize])
     }
 
     /// Indices of this cloud's points become the caller's.
@@ -422,6 +561,21 @@ impl Origin {
             *assignment = all;
         }
     }
+}
+
+/// Whether strays are dropped before a surface is made.
+fn outliers(params: &SurfaceParams) -> Outliers {
+    let reduce = params.reduce.as_ref();
+    reduce.map_or(Outliers::Keep, |reduce| reduce.outliers)
+}
+
+/// Points that span something.
+fn check_extent(features: &Features) -> Result<()> {
+    if features.normals.iter().any(|&n| n != Vec3::ZERO) {
+        return Ok(());
+    }
+    let found = "all points lie on one line or at one place".into();
+    Err(Error::Degenerate { found })
 }
 
 fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
@@ -499,6 +653,7 @@ fn points_to_fit(
     let all = ReduceParams {
         target: Target::Ratio(1.0),
         assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
+        cells: params.reduce.as_ref().is_some_and(|r| r.cells),
         ..Default::default()
     };
     let positions = (0..n).map(|i| features.denoised(tree, i)).collect();

@@ -21,7 +21,7 @@ use crate::progress::{Part, Progress, Stage};
 use crate::surroundings::{self, Around};
 use crate::tolerance;
 
-/// A reduced cloud. Every array but `assignment` has one entry a reduced point.
+/// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
 #[derive(Debug, Clone)]
 pub struct Reduced {
     /// Positions, unit normals (signs of the input's normals where it had them, else arbitrary), colours and scalars, in
@@ -38,6 +38,8 @@ pub struct Reduced {
     /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order;
     /// [`crate::outliers::DROPPED`] for one that was dropped.
     pub assignment: Option<Vec<u32>>,
+    /// Where they were asked for: the sub-domains, as the corners of the box of each one's points.
+    pub cells: Option<Vec<[Vec3; 2]>>,
     /// The shares of the input points, in the octree's order, in the reduced points.
     pub shares: Vec<Shares>,
     /// What the clustering did.
@@ -72,8 +74,8 @@ pub struct Clustering {
     pub shares: Vec<Shares>,
     /// Wanted spacing at every point.
     pub spacing: Vec<f32>,
-    /// Sub-domains.
-    pub cells: usize,
+    /// Sub-domains, as ranges of the octree's points.
+    pub cells: Vec<Range<usize>>,
     /// Sweeps.
     pub iterations: usize,
     /// Points kept as they are.
@@ -137,6 +139,12 @@ pub fn reduce(
         }
         assignment
     });
+    let cells = params.cells.then(|| {
+        let ranges = clustering.cells.iter();
+        ranges
+            .map(|range| corners(&tree.points[range.clone()]))
+            .collect()
+    });
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
         cloud: reduced,
@@ -145,10 +153,18 @@ pub fn reduce(
         weights,
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
+        cells,
         shares: clustering.shares,
         stats,
         reason,
     })
+}
+
+/// Corners of the box of some points.
+fn corners(points: &[Vec3]) -> [Vec3; 2] {
+    let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    [low, high]
 }
 
 /// m of eq. 1-5, by default the method's.
@@ -322,7 +338,7 @@ fn keep_all(tree: &Octree, features: &Features) -> (Clustering, Octree) {
         centers: tree.points.clone(),
         shares: (0..n as u32).map(alone).collect(),
         spacing: features.spacing.clone(),
-        cells: 0,
+        cells: Vec::new(),
         iterations: 0,
         kept: n,
     };
@@ -364,7 +380,7 @@ fn adaptive(
         centers: clusters.centers,
         shares: clusters.shares,
         spacing,
-        cells: cells.len(),
+        cells,
         iterations: clusters.iterations,
         kept: 0,
     };
@@ -398,7 +414,7 @@ fn stats(
         .map(|(apart2, &(sum, n))| apart2.sqrt() * f64::from(n) / sum);
     let separation = apart().fold(f64::INFINITY, f64::min);
     ReduceStats {
-        cells: clustering.cells,
+        cells: clustering.cells.len(),
         iterations: clustering.iterations,
         objective,
         validity: if centers.len() > 1 && separation > 0.0 {

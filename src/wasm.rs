@@ -8,7 +8,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::error::Error;
 use crate::formats::{self, Format, Output, Positions, RawCloud, WriteOptions};
 use crate::params::{ReduceParams, SurfaceParams};
-use crate::pipeline::{self, ReducedCloud, Surface};
+use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::progress::{Progress, Stage};
 use crate::report::ReduceReport;
 use crate::samples::{self, Model};
@@ -78,12 +78,27 @@ pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsRes
     reduced_to_js(&result, precision)
 }
 
-/// [`pipeline::reconstruct_owned`].
+/// What is remembered for the next call that has `keep`.
+static MEMORY: Mutex<Option<pipeline::Memory>> = Mutex::new(None);
+
+/// [`pipeline::reconstruct_owned`], or where `keep` is true [`pipeline::reconstruct_again`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
+    let params: SurfaceParams = from_js(options)?;
+    let mut progress = JsProgress(progress);
+    let mut memory = MEMORY
+        .lock()
+        .map_err(|_| Error::Internal("a call before this one panicked".into()))?;
+    if !params.keep {
+        *memory = None;
+    }
     let (input, precision) = cloud.to_cloud()?;
-    let options = from_js(options)?;
-    let mut surface = pipeline::reconstruct_owned(input, &options, &mut JsProgress(progress))?;
+    let mut surface = if params.keep {
+        let memory = memory.get_or_insert_default();
+        pipeline::reconstruct_again(input, &params, memory, &mut progress)?
+    } else {
+        pipeline::reconstruct_owned(input, &params, &mut progress)?
+    };
     sign(&mut surface.report.reduce);
     sign(&mut surface.cloud.report);
     surface_to_js(&surface, precision)
@@ -272,6 +287,12 @@ fn reduced_to_js(result: &ReducedCloud, precision: Precision) -> JsResult {
             "assignment",
             optional(&reduced.assignment, |a| Uint32Array::from(&a[..])),
         ),
+        (
+            "cells",
+            reduced.cells.as_ref().map_or(JsValue::UNDEFINED, |cells| {
+                positions_to_js(cells.as_flattened(), cloud, precision)
+            }),
+        ),
         ("report", to_js(&result.report)?),
     ])?;
     attach(fields, &cloud.attributes, cloud.origin)
@@ -293,9 +314,20 @@ fn surface_to_js(surface: &Surface, precision: Precision) -> JsResult {
         ),
         ("colors", colors_to_js(&surface.colors)),
         ("cloud", reduced_to_js(&surface.cloud, precision)?),
+        ("distances", distances_to_js(&surface.distances)?),
         ("report", to_js(&surface.report)?),
     ])?;
     attach(fields, &surface.attributes, cloud.origin)
+}
+
+fn distances_to_js(distances: &Option<Distances>) -> JsResult {
+    let Some(Distances { points, vertices }) = distances else {
+        return Ok(JsValue::UNDEFINED);
+    };
+    object([
+        ("points", Float32Array::from(&points[..]).into()),
+        ("vertices", Float32Array::from(&vertices[..]).into()),
+    ])
 }
 
 /// Points of the unit frame in the caller's, single or double precision as the input was.

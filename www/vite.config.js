@@ -1,3 +1,6 @@
+import { createHash } from 'node:crypto';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { defineConfig } from 'vite';
 
 /** With these two headers a page is cross-origin isolated, so Pointweave takes its threads build. */
@@ -6,9 +9,35 @@ const isolation = {
   'Cross-Origin-Embedder-Policy': 'require-corp',
 };
 
+/** Writes the service worker beside the built page, with the list of all its files. */
+function serviceWorker() {
+  let folder = '';
+  return {
+    name: 'pointweave-service-worker',
+    apply: /** @type {const} */ ('build'),
+    configResolved(/** @type {import('vite').ResolvedConfig} */ { root, build }) {
+      folder = join(root, build.outDir);
+    },
+    closeBundle() {
+      const source = readFileSync(new URL('service-worker.js', import.meta.url), 'utf8');
+      const names = readdirSync(folder, { recursive: true, withFileTypes: true })
+        .filter((entry) => entry.isFile())
+        .map((entry) => join(entry.parentPath, entry.name).slice(folder.length + 1).replaceAll('\\', '/'))
+        .sort();
+      const hash = createHash('sha256').update(source);
+      for (const name of names) hash.update(name).update(readFileSync(join(folder, name)));
+      const version = hash.digest('hex').slice(0, 16);
+      const files = names.map((name) => (name === 'index.html' ? './' : `./${name}`));
+      const head = `const VERSION = ${JSON.stringify(version)};\nconst FILES = ${JSON.stringify(files, null, 2)};\n`;
+      writeFileSync(join(folder, 'service-worker.js'), head + source);
+    },
+  };
+}
+
 export default defineConfig({
   // Relative addresses: the built page works from any folder of any static server.
   base: './',
+  plugins: [serviceWorker()],
   // The engine's workers are ES modules and load more modules of their own.
   worker: { format: 'es' },
   build: { target: 'es2022', chunkSizeWarningLimit: 1000 },

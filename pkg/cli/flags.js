@@ -16,7 +16,7 @@ import { UsageError } from './usage.js';
  */
 
 /** Not flags: what has one of another shape, what the file's name says, and what no file holds. */
-const LEFT_OUT = { reduce: ['target', 'assignment'], reconstruct: ['reduce'], write: ['format'] };
+const LEFT_OUT = { reduce: ['target', 'assignment', 'cells'], reconstruct: ['reduce', 'distances', 'keep'], write: ['format'] };
 
 /**
  * @param {Command} command

@@ -9,7 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const ROOT = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
-const DIST = join(ROOT, 'www/dist');
+export const DIST = join(ROOT, 'www/dist');
 const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(ROOT, '../shared');
 
 const CHROMIUM = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
@@ -19,12 +19,12 @@ const FLAGS = [
   '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
 ];
 
-const TYPES = {
+export const TYPES = {
   '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm',
 };
 
 /** What lies over the picture, hidden for pixel tests. */
-const PICTURE_ONLY = '.caption, .tools, .views, .progress, .message { visibility: hidden !important }';
+const PICTURE_ONLY = '.caption, .legend, .tools, .views, .split, .progress, .message { visibility: hidden !important }';
 
 /** Where pictures are kept for people to look at, when this is set. */
 const PICTURES = process.env.POINTWEAVE_PICTURES;
@@ -64,7 +64,7 @@ export async function start(t, { isolated = true } = {}) {
     await browser.close();
     server.close();
   });
-  return new Site(browser, `http://localhost:${server.address().port}/`, files);
+  return new Site(browser, server, files);
 }
 
 async function answer(request, response, files, isolated) {
@@ -82,23 +82,37 @@ async function answer(request, response, files, isolated) {
 /** The page's address, and the files that a test puts beside it to be dropped. */
 class Site {
   #browser;
+  #server;
   #files;
 
-  constructor(browser, address, files) {
+  constructor(browser, server, files) {
     this.#browser = browser;
-    this.address = address;
+    this.#server = server;
+    this.address = `http://localhost:${server.address().port}/`;
     this.#files = files;
   }
 
-  /** Opens the page and waits for nothing. */
-  async open(options = {}, prepare = async (_page) => {}) {
+  /** Puts a file beside the page and says what its address ends with. */
+  serve(name, bytes) {
+    this.#files.set(`/dropped/${name}`, bytes);
+    return `dropped/${encodeURIComponent(name)}`;
+  }
+
+  /** From now on there is no server any more. */
+  async stop() {
+    this.#server.closeAllConnections();
+    await new Promise((closed) => this.#server.close(closed));
+  }
+
+  /** Opens the page, or what follows its address, and waits for nothing. */
+  async open(options = {}, prepare = async (_page) => {}, path = '') {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 820 }, reducedMotion: 'reduce', ...options });
     const page = await context.newPage();
     const faults = [];
     page.on('pageerror', (error) => faults.push(String(error)));
     page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
     await prepare(page);
-    await page.goto(this.address);
+    await page.goto(this.address + path);
     return new PageUnderTest(page, faults, this.#files);
   }
 }
@@ -170,6 +184,14 @@ class PageUnderTest {
 
   async show(view) {
     await this.page.locator(`input[name="view"][value="${view}"]`).check({ force: true });
+    await this.settled();
+  }
+
+  /** Chooses what the colours show, as a person does. */
+  async paint(name) {
+    await this.page.click('#paint-menu > summary');
+    await this.page.check(`input[name="paint"][value="${name}"]`);
+    await this.page.keyboard.press('Escape');
     await this.settled();
   }
 

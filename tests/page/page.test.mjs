@@ -25,8 +25,8 @@ for (const isolated of [true, false]) {
     assert.equal(await site.number('inputPoints'), DUCK);
     assert.equal(await site.number('outputPoints'), Math.round(DUCK / 3));
     assert.equal(await site.number('components'), 1);
-    assert.match(await site.page.innerText('#engine'), isolated ? /^\d+ threads$/ : /^one thread$/);
-    if (!isolated) assert.match(await site.page.innerText('#engine-reason'), /not cross-origin isolated/);
+    assert.match(await site.page.textContent('#engine'), isolated ? /^\d+ threads$/ : /^one thread$/);
+    if (!isolated) assert.match(await site.page.textContent('#engine-reason'), /not cross-origin isolated/);
     assert.equal(await site.page.isVisible('#message'), false);
 
     const mesh = silhouette(await site.pictureOf('mesh')).closed(6);
@@ -78,7 +78,7 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
       await page.keyboard.press('Tab');
       reached.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.getAttribute('name')));
     }
-    for (const id of ['choose', 'canvas', 'fit', 'up', 'view', 'duck', 'pig', 'part', 'keep-slider', 'keep-field', 'download-mesh', 'download-reduced']) {
+    for (const id of ['choose', 'canvas', 'fit', 'up', 'view', 'duck', 'pig', 'part', 'keep-slider', 'keep-field', 'save']) {
       assert.ok(reached.has(id), `${id} is reached with Tab`);
     }
   });
@@ -102,16 +102,19 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
   });
 
   await t.test('downloads hold what the numbers say', async () => {
+    await page.click('#formats > summary');
     for (const [button, pattern, number] of [
-      ['#download-reduced', /element vertex (\d+)/, 'outputPoints'],
-      ['#download-mesh', /element face (\d+)/, 'triangles'],
+      ['#save-reduced-ply', /element vertex (\d+)/, 'outputPoints'],
+      ['#save-mesh-ply', /element face (\d+)/, 'triangles'],
     ]) {
+      const size = Number(await page.getAttribute(`${button} data`, 'value'));
       const saved = page.waitForEvent('download');
       await page.click(button);
       const download = await saved;
       assert.match(download.suggestedFilename(), /^duck-.*\.ply$/);
-      const header = (await readFile(await download.path())).toString('latin1').slice(0, 2000);
-      assert.equal(Number(pattern.exec(header)?.[1]), await site.number(number));
+      const bytes = await readFile(await download.path());
+      assert.equal(bytes.length, size, 'the size was shown first');
+      assert.equal(Number(pattern.exec(bytes.toString('latin1', 0, 2000))?.[1]), await site.number(number));
     }
   });
 
@@ -248,5 +251,5 @@ test('without WebGL it says so, and still computes', { timeout: PATIENCE }, asyn
   await site.made();
   assert.match(await site.page.locator('#no-webgl:visible').innerText(), /cannot be drawn/);
   assert.equal(await site.number('inputPoints'), DUCK);
-  assert.ok(await site.page.isEnabled('#download-mesh'));
+  await site.page.waitForSelector('#save:enabled');
 });

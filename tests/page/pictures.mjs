@@ -142,6 +142,15 @@ export function overlap(a, b) {
   return both / either;
 }
 
+/** A function that gives red, green and blue, 0-255, at shares of the width and height. */
+export function colorsOf(png) {
+  const { width, height, channels, data } = decodePng(png);
+  return (x, y) => {
+    const at = (Math.round(y * (height - 1)) * width + Math.round(x * (width - 1))) * channels;
+    return [...data.subarray(at, at + 3)];
+  };
+}
+
 /** Mean red, green and blue, 0-255, of the pixels under the mask. */
 export function meanColor(png, mask) {
   const { channels, data } = decodePng(png);
@@ -150,12 +159,14 @@ export function meanColor(png, mask) {
   return sum.map((value) => value / mask.area);
 }
 
-/** Share of pixels that differ visibly between two pictures. */
-export function difference(a, b) {
+/** Share of pixels that differ visibly between two pictures, or between `from` and `to`, shares of their width. */
+export function difference(a, b, from = 0, to = 1) {
   const [first, second] = [decodePng(a), decodePng(b)];
-  let differing = 0;
-  const pixels = first.width * first.height;
-  for (let i = 0; i < pixels; i++) {
+  let differing = 0, pixels = 0;
+  for (let i = 0; i < first.width * first.height; i++) {
+    const x = (i % first.width) / first.width;
+    if (x < from || x >= to) continue;
+    pixels++;
     const apart = [0, 1, 2].reduce(
       (sum, c) => sum + Math.abs(first.data[i * first.channels + c] - second.data[i * second.channels + c]), 0);
     if (apart > 24) differing++;

@@ -60,3 +60,18 @@ function rotation(x, y, z, w) {
   ];
   return (point) => rows.map((row) => row[0] * point[0] + row[1] * point[1] + row[2] * point[2]);
 }
+
+/** Points evenly spread over a sphere of radius 1; `move` changes each of them, given its direction and its number. */
+export function spherePoints(count, move = (direction) => direction) {
+  const golden = Math.PI * (3 - Math.sqrt(5));
+  return Array.from({ length: count }, (_, i) => {
+    const z = 1 - (2 * i + 1) / count;
+    const ring = Math.sqrt(1 - z * z);
+    return move([ring * Math.cos(i * golden), ring * Math.sin(i * golden), z], i);
+  });
+}
+
+/** Points as an XYZ text. */
+export function toXyz(points) {
+  return Buffer.from(points.map((point) => point.join(' ')).join('\n'));
+}

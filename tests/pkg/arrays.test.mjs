@@ -127,6 +127,42 @@ test('every input point is assigned to a reduced point', async () => {
   }
 });
 
+test('the sub-domains are boxes that hold every point', async () => {
+  const cloud = sphere(3000, { center: [100, 0, 0] });
+  assert.equal((await reduce(cloud)).cells, undefined);
+  for (const method of ['adaptive', 'paper']) {
+    const { cells, report } = await reduce(cloud, { method, cells: true });
+    assert.ok(cells instanceof Float32Array && cells.length === 6 * report.cells && report.cells > 4);
+    const holds = (k, i) => [0, 1, 2].every((axis) => {
+      const value = cloud.positions[3 * i + axis];
+      return cells[6 * k + axis] - 1e-4 <= value && value <= cells[6 * k + 3 + axis] + 1e-4;
+    });
+    for (let i = 0; i < 3000; i += 7) {
+      assert.ok(Array.from({ length: report.cells }, (_, k) => k).some((k) => holds(k, i)), `${method}: point ${i}`);
+    }
+  }
+});
+
+test('a map of the distances adds up to the report, point by point and on the vertices', async () => {
+  const clean = sphere(3000);
+  const cloud = { positions: Float32Array.of(9, 0, 0, ...clean.positions) };
+  assert.equal((await reconstruct(cloud)).distances, undefined);
+  const mesh = await reconstruct(cloud, { distances: true, reduce: { outliers: 'drop', target: { count: 500 } } });
+  const { points, vertices } = mesh.distances;
+  assert.equal(points.length, 3001);
+  assert.equal(vertices.length, mesh.positions.length / 3);
+  assert.ok(Number.isNaN(points[0]), 'the stray was dropped');
+  const kept = points.subarray(1);
+  const { mean, rms, max } = mesh.report.distance;
+  const near = (found, expected) => assert.ok(Math.abs(found - expected) < 1e-5 * expected, `${found}, not ${expected}`);
+  near(kept.reduce((sum, d) => sum + d, 0) / 3000, mean);
+  near(Math.sqrt(kept.reduce((sum, d) => sum + d * d, 0) / 3000), rms);
+  near(Math.max(...kept), max);
+  // A vertex has the mean of points around it: no more than the largest, and something nearly everywhere.
+  const known = vertices.filter((d) => !Number.isNaN(d));
+  assert.ok(known.length > 0.9 * vertices.length && known.every((d) => d >= 0 && d <= Math.fround(max)));
+});
+
 test('outliers are dropped when they are to be, and indices stay those of the input', async () => {
   const clean = sphere(3000);
   const strays = [9, 0, 0, -7, 7, 0, 0, 0, 0.02, 0, -8, 6, 0, -8.01, 6];

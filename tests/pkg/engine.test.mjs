@@ -114,6 +114,19 @@ test('a call that fails does not hold up the next', async (t) => {
   assert.equal((await good).positions.length / 3, 167);
 });
 
+test('with keep, what would come out the same is not done again', async (t) => {
+  const engine = await engineFor(t, { threads: 1 });
+  const cloud = sphere(3000);
+  const first = await engine.reconstruct(cloud, { keep: true });
+  const second = await engine.reconstruct(cloud, { keep: true, sharp: false });
+  const fresh = await engine.reconstruct(cloud, { sharp: false });
+  const forgotten = await engine.reconstruct(cloud, { keep: true });
+  assert.deepEqual(second.positions, fresh.positions);
+  assert.deepEqual(second.indices, fresh.indices);
+  assert.deepEqual(['features', 'cluster', 'fit'].map((stage) => stage in second.report.ms), [false, false, true]);
+  for (const { report } of [first, fresh, forgotten]) assert.ok('features' in report.ms && 'cluster' in report.ms);
+});
+
 test('progress goes through the stages, never back, and ends at 1', async (t) => {
   for (const worker of [false, true]) {
     const engine = await engineFor(t, { threads: 1, worker });

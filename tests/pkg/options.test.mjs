@@ -143,6 +143,7 @@ test('Rust has the same ranges', async () => {
       ['attributes', [[{}, true], [{ height: 'mean', colors: 'majority' }, true], [{ height: 'nearest' }, true],
         [{ height: 'other' }, false], [{ depth: 'mean' }, false], ['mean', false]]],
       ['assignment', [[true, true], [false, true], [1, false]]],
+      ['cells', [[true, true], [1, false]]],
       ...[['method', ['adaptive', 'paper']], ['norm', ['euclidean', 'diagonal', 'mahalanobis']],
         ['clusters', ['proportional', 'validity']], ['placement', ['implicit', 'mesh', 'center', 'sample']],
         ['outliers', ['keep', 'drop']]]
@@ -158,6 +159,8 @@ test('Rust has the same ranges', async () => {
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
       ['orient', [[true, true], [1, false]]],
       ['sharp', [[false, true], ['no', false]]],
+      ['distances', [[true, true], [1, false]]],
+      ['keep', [[true, true], ['yes', false]]],
     ],
   };
   for (const [call, options] of Object.entries(edges)) {

@@ -1,54 +1,57 @@
+import { addressOf, readAddress } from './address.js';
+import { Comparison } from './comparison.js';
+import { Controls } from './controls.js';
 import { announce, byId } from './dom.js';
-import { acceptFiles, saveFile } from './files.js';
+import { acceptFiles } from './files.js';
 import * as format from './format.js';
-import { KeepControl } from './keep.js';
-import { listenToKeys } from './keys.js';
+import { helpDialog } from './help.js';
+import { describeKeys, listenToKeys } from './keys.js';
+import { Look } from './look.js';
+import { tendMenus } from './menus.js';
 import { MessageCard } from './messages.js';
 import { Numbers } from './numbers.js';
 import { ProgressBar } from './progress.js';
-import { Session, keptOf } from './session.js';
-import { followTheme } from './theme.js';
-import { Viewer } from './viewer.js';
+import { isSample } from './samples.js';
+import { Saving } from './saving.js';
+import { Session } from './session.js';
+import { Sharing } from './sharing.js';
+import { meaningOf } from './targets.js';
 
 /**
- * @import { View } from './viewer.js'
+ * @import { Key } from './keys.js'
  * @import { Outcome, Scan, State } from './session.js'
+ * @import { SampleName } from './samples.js'
  */
-
-/** The simulated scans, at the sizes of the paper's examples. */
-const SAMPLES = /** @type {const} */ ({
-  duck: { title: 'Toy duck', count: 35_647 },
-  pig: { title: 'Toy pig', count: 171_875 },
-  part: { title: 'Machined part', count: 60_000 },
-});
-
-const TURN = Math.PI / 24;
 
 /** Puts the session, the picture and the controls together. */
 export class App {
   #root = byId('app', HTMLElement);
   #session = new Session();
-  #viewer = openViewer();
+  #look = new Look(this.#root, () => this.#noteAddress());
   #numbers = new Numbers();
+  #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
-  /** The person chose a view for this scan; finishing a job does not change it. */
-  #viewChosen = false;
   #choose = acceptFiles((files) => this.#openFiles(files));
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
-  #keep = new KeepControl((share) => this.#describeKeep(share), (share) => this.#session.setShare(share));
+  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
+  #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
+  #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, 'comparison'));
 
   constructor() {
     this.#listenToSession();
     this.#listenToControls();
-    this.#keep.set(this.#session.share);
-    if (this.#viewer) followTheme((theme) => this.#viewer?.setTheme(theme));
-    byId('no-webgl', HTMLElement).hidden = Boolean(this.#viewer);
+    tendMenus();
   }
 
-  openSample(/** @type {keyof typeof SAMPLES} */ model) {
-    const { title, count } = SAMPLES[model];
-    return this.#session.openSample(model, title, count);
+  /** Opens what the address asks for, by default the duck. */
+  start() {
+    const { words, sample, src, view, paint } = readAddress();
+    this.#session.settings.read(words);
+    this.#look.wish(view, paint);
+    this.#controls.show(this.#session.target, 0);
+    if (src && !sample) return this.#session.openAddress(src);
+    return this.#session.openSample(sample ?? 'duck');
   }
 
   #openFiles(/** @type {File[]} */ files) {
@@ -70,35 +73,21 @@ export class App {
 
   #listenToControls() {
     byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
-    byId('fit', HTMLButtonElement).addEventListener('click', () => this.#viewer?.orbit.fit());
-    byId('up', HTMLButtonElement).addEventListener('click', () => this.#turnUp());
     this.#run.addEventListener('click', () => this.#session.run());
-    for (const what of /** @type {const} */ (['mesh', 'reduced'])) {
-      byId(`download-${what}`, HTMLButtonElement).addEventListener('click', () => this.#download(what));
-    }
     for (const button of this.#samples()) {
-      button.addEventListener('click', () => this.openSample(/** @type {keyof typeof SAMPLES} */ (button.dataset.sample)));
+      button.addEventListener('click', () => this.#session.openSample(/** @type {SampleName} */ (button.dataset.sample)));
     }
-    byId('views', HTMLFieldSetElement).addEventListener('change', (event) => {
-      this.#viewChosen = true;
-      this.#show(/** @type {View} */ (/** @type {HTMLInputElement} */ (event.target).value));
-    });
-    const orbit = this.#viewer?.orbit;
-    listenToKeys(byId('stage', HTMLElement), {
-      1: () => this.#chooseView('points'),
-      2: () => this.#chooseView('reduced'),
-      3: () => this.#chooseView('mesh'),
-      f: () => orbit?.fit(),
-      u: () => this.#turnUp(),
-      Escape: () => this.#message.hide(),
-      '+': () => orbit?.zoom(1 / 1.2),
-      '=': () => orbit?.zoom(1 / 1.2),
-      '-': () => orbit?.zoom(1.2),
-      ArrowLeft: () => orbit?.turn(-TURN, 0),
-      ArrowRight: () => orbit?.turn(TURN, 0),
-      ArrowUp: () => orbit?.turn(0, TURN),
-      ArrowDown: () => orbit?.turn(0, -TURN),
-    });
+    addEventListener('hashchange', () => this.#addressChanged());
+    /** @type {Key[]} */
+    const keys = [
+      ...this.#look.keys,
+      { key: 'o', does: 'Open a scan from this device', act: this.#choose },
+      { key: '?', does: 'This list', act: () => showHelp() },
+      { key: 'Escape', shown: 'Esc', does: 'Close a message or menu, cancel the work', act: () => this.#escape() },
+    ];
+    const showHelp = helpDialog(describeKeys(keys));
+    byId('help-open', HTMLButtonElement).addEventListener('click', showHelp);
+    listenToKeys(keys);
   }
 
   #enter(/** @type {State} */ state) {
@@ -116,33 +105,26 @@ export class App {
   }
 
   #opened(/** @type {Scan} */ scan) {
-    this.#mark(scan.model);
+    for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === scan.model);
     document.title = `${scan.title} · Pointweave`;
     byId('caption-title', HTMLElement).textContent = scan.title;
     byId('caption-detail', HTMLElement).textContent = `${scan.model ? 'simulated scan, ' : ''}${format.count(scan.count)} points`;
     byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
-    this.#viewer?.open(scan.cloud, scan.frame);
-    this.#viewChosen = false;
-    this.#offer('reduced', false);
-    this.#offer('mesh', false);
-    this.#show('points');
+    this.#look.opened(scan);
     this.#numbers.opened(scan.count);
-    this.#keep.set(this.#session.share);
-    this.#describeKeep(this.#session.share);
+    this.#saving.offer(null);
+    this.#controls.show(this.#session.target, scan.count);
+    this.#noteAddress();
   }
 
   #made(/** @type {Outcome} */ outcome) {
     const { reduced, mesh } = outcome;
-    this.#viewer?.set('reduced', reduced);
-    this.#viewer?.set('mesh', mesh);
-    this.#offer('reduced', true);
-    this.#offer('mesh', Boolean(mesh));
-    this.#numbers.made(outcome);
-    const current = /** @type {View} */ (this.#root.dataset.view);
-    this.#show(this.#viewChosen && (mesh || current !== 'mesh') ? current : mesh ? 'mesh' : 'reduced');
-    announce(mesh
-      ? `Done: ${format.count(reduced.positions.length / 3)} points kept, ${format.count(mesh.indices.length / 3)} triangles`
-      : `Done: ${format.count(reduced.positions.length / 3)} points kept, no mesh`);
+    this.#look.made(outcome);
+    this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
+    this.#saving.offer(outcome);
+    this.#comparison.made(outcome);
+    const kept = `Done: ${format.count(reduced.positions.length / 3)} points kept`;
+    announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
   }
 
   #cancelled() {
@@ -155,66 +137,41 @@ export class App {
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
   }
 
-  #show(/** @type {View} */ view) {
-    this.#root.dataset.view = view;
-    radio(view).checked = true;
-    this.#viewer?.show(view);
+  #escape() {
+    if (this.#message.open) this.#message.hide();
+    else this.#session.cancel();
   }
 
-  #chooseView(/** @type {View} */ view) {
-    if (radio(view).disabled) return;
-    this.#viewChosen = true;
-    this.#show(view);
-    announce(`${radio(view).labels?.[0].innerText.replace(/\d/, '').trim()} is shown`);
+  /** Keeps so many points: chosen in the chart. */
+  #keep(/** @type {number} */ count) {
+    this.#session.settings.target = { kind: 'count', value: count };
+    this.#settingsChanged();
   }
 
-  /** Makes a view, and the download of what it shows, possible or not. */
-  #offer(/** @type {'reduced' | 'mesh'} */ view, /** @type {boolean} */ possible) {
-    radio(view).disabled = !possible;
-    byId(`download-${view}`, HTMLButtonElement).disabled = !possible;
+  #settingsChanged() {
+    this.#controls.show(this.#session.target, this.#session.scan?.count ?? 0);
+    this.#noteAddress();
+    this.#session.apply();
   }
 
-  #describeKeep(/** @type {number} */ share) {
-    const scan = this.#session.scan;
-    if (!scan) return;
-    this.#keep.describe(`${format.count(keptOf(scan.count, share))} of ${format.count(scan.count)} points. Curved places keep more.`);
+  /** The address always says what is shown, so that it can be shared, kept and reloaded. */
+  #noteAddress() {
+    const { scan, settings } = this.#session;
+    const address = addressOf(scan, settings, this.#look.state);
+    if (scan) history.replaceState(null, '', address);
+    this.#sharing.show(address, scan, `${scan?.file ?? 'scan'}-mesh.glb`);
   }
 
-  #turnUp() {
-    if (this.#viewer) announce(`${this.#viewer.orbit.nextUp()} is up`);
-  }
-
-  async #download(/** @type {'reduced' | 'mesh'} */ what) {
-    const name = `${this.#session.outcome?.scan.file}-${what}.ply`;
-    try {
-      saveFile(/** @type {Uint8Array<ArrayBuffer>} */ (await this.#session.ply(what)), name);
-      announce(`${name} saved`);
-    } catch (error) {
-      this.#message.showError(error, name);
-    }
-  }
-
-  /** Marks the open sample in the gallery, or none. */
-  #mark(/** @type {string | undefined} */ model) {
-    for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === model);
+  /** Somebody put another # behind the same address. */
+  #addressChanged() {
+    const { words, sample, view, paint } = readAddress();
+    this.#session.settings.read(words);
+    this.#look.wish(view, paint);
+    if (isSample(sample) && sample !== this.#session.scan?.model) this.#session.openSample(sample);
+    else this.#settingsChanged();
   }
 
   #samples() {
     return /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-sample]'));
   }
-}
-
-/** The viewer, or null where there is no WebGL 2: the rest of the page works without it. */
-function openViewer() {
-  try {
-    return new Viewer(byId('canvas', HTMLCanvasElement));
-  } catch (error) {
-    console.warn('Pointweave draws nothing:', error);
-    return null;
-  }
-}
-
-function radio(/** @type {View} */ view) {
-  const input = document.querySelector(`input[name="view"][value="${view}"]`);
-  return /** @type {HTMLInputElement} */ (input);
 }

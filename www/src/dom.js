@@ -11,6 +11,17 @@ export function byId(id, kind) {
   return element;
 }
 
+/**
+ * A new element with these properties.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Partial<HTMLElementTagNameMap[Tag]>} [properties]
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
+export function element(tag, properties = {}) {
+  return Object.assign(document.createElement(tag), properties);
+}
+
 /** Tells a screen reader, without moving the focus. */
 export function announce(/** @type {string} */ text) {
   byId('live', HTMLElement).textContent = text;

@@ -20,6 +20,7 @@ export class EyeDome {
       near: { value: 0 },
       far: { value: 1 },
       reach: { value: 1 },
+      parallel: { value: false },
     },
     depthTest: false,
     depthWrite: false,
@@ -28,13 +29,15 @@ export class EyeDome {
     fragmentShader: /* glsl */ `
       uniform sampler2D colors, depths;
       uniform float near, far, reach;
+      uniform bool parallel;
       const float STRENGTH = 60.0;
       const float LIMIT = 0.012;
 
       float logDepth(ivec2 pixel) {
         ivec2 size = textureSize(depths, 0);
         float depth = texelFetch(depths, clamp(pixel, ivec2(0), size - 1), 0).r;
-        return log2(near * far / (far - depth * (far - near)));
+        // In parallel projection, as much as at the usual distance of two diagonals.
+        return parallel ? 0.7 * depth * (far - near) : log2(near * far / (far - depth * (far - near)));
       }
 
       void main() {
@@ -62,7 +65,7 @@ export class EyeDome {
   }
 
   /**
-   * Draws the scene through the pass.
+   * Draws the scene through the pass. What the renderer's scissor leaves out of the canvas stays as it was.
    * @param {import('three').WebGLRenderer} renderer
    * @param {import('three').Scene} scene
    * @param {import('three').PerspectiveCamera} camera
@@ -76,6 +79,7 @@ export class EyeDome {
     uniforms.near.value = camera.near;
     uniforms.far.value = camera.far;
     uniforms.reach.value = renderer.getPixelRatio();
+    uniforms.parallel.value = camera.projectionMatrix.elements[15] === 1;
     renderer.clear();
     this.#quad.render(renderer);
   }

@@ -1,7 +1,7 @@
 import { byId } from './dom.js';
 
 /**
- * Files come in by dropping them anywhere, by choosing or by pasting.
+ * Files come in by dropping them anywhere, by choosing or by pasting; points may be pasted as text, too.
  * @param {(files: File[]) => void} open
  * @returns {() => void} shows the chooser
  */
@@ -15,8 +15,11 @@ export function acceptFiles(open) {
     input.value = ''; // the same file can be chosen again
   });
   document.addEventListener('paste', (event) => {
+    if (event.target instanceof HTMLInputElement) return; // it is meant for the field
     const files = [...(event.clipboardData?.files ?? [])];
+    const text = event.clipboardData?.getData('text/plain') ?? '';
     if (files.length) open(files);
+    else if (/^\s*([-+.\d]|ply\b|#)/i.test(text)) open([new File([text], 'pasted points.xyz', { type: 'text/plain' })]);
   });
 
   // A drag enters and leaves every element it crosses; only the balance tells whether it is over the page.
@@ -45,9 +48,9 @@ export function acceptFiles(open) {
 }
 
 /** Hands a file to the person: the browser saves it, nothing is sent. */
-export function saveFile(/** @type {Uint8Array<ArrayBuffer>} */ bytes, /** @type {string} */ name) {
+export function saveFile(/** @type {Blob} */ file, /** @type {string} */ name) {
   const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([bytes], { type: 'application/octet-stream' }));
+  link.href = URL.createObjectURL(file);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);

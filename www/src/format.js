@@ -1,16 +1,20 @@
 /** Numbers as people read them. */
 
 const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
-const short = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
+const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
+const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumSignificantDigits: 2 });
 
 export const count = (/** @type {number} */ n) => whole.format(n);
+
+/** As on an axis: 30K, 1.5M. */
+export const short = (/** @type {number} */ n) => compact.format(n);
 
 /** Three digits, with a power of ten where zeros would crowd them out. */
 export function length(/** @type {number} */ value) {
   const size = Math.abs(value);
-  if (size === 0 || (size >= 1e-4 && size < 1e7)) return short.format(value);
-  const [digits, exponent] = value.toExponential(2).split('e');
-  return `${digits} × 10${superscript(exponent)}`;
+  if (size === 0 || (size >= 1e-4 && size < 1e7)) return digits.format(value);
+  const [mantissa, exponent] = value.toExponential(2).split('e');
+  return `${mantissa} × 10${superscript(exponent)}`;
 }
 
 function superscript(/** @type {string} */ digits) {
@@ -28,5 +32,5 @@ export function duration(/** @type {number} */ ms) {
 }
 
 export function bytes(/** @type {number} */ n) {
-  return n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${short.format(n / 1e6)} MB`;
+  return n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${digits.format(n / 1e6)} MB`;
 }

@@ -1,20 +1,29 @@
 /**
- * Keys for the picture. They act while the picture or nothing in particular has the focus, so that typing and
- * other controls keep theirs.
- * @param {HTMLElement} stage
- * @param {Record<string, () => void>} actions  by KeyboardEvent.key, letters in lower case
+ * A key: what it is called in the help, what it does in words, and what it does.
+ * @typedef {{ key: string, also?: string[], shown?: string, does?: string, act: () => void }} Key
  */
-export function listenToKeys(stage, actions) {
+
+/** What takes letters itself. */
+const TYPING = 'input:not([type="checkbox"], [type="radio"], [type="range"]), textarea, select, dialog';
+
+/**
+ * Keys for the picture. Arrows act while the picture has the focus, the others wherever nobody types.
+ * @param {Key[]} keys  by KeyboardEvent.key, letters in lower case
+ */
+export function listenToKeys(keys) {
+  const actions = new Map(keys.flatMap(({ key, also = [], act }) => [key, ...also].map((name) => [name, act])));
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const focus = document.activeElement;
-    const onPicture = focus instanceof HTMLCanvasElement;
-    const free = focus === null || focus === document.body || stage.contains(focus);
-    const moves = event.key.startsWith('Arrow');
-    if (!(moves ? onPicture : free)) return;
-    const act = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (!act) return;
+    const heard = event.key.startsWith('Arrow') ? focus instanceof HTMLCanvasElement : !focus?.closest(TYPING);
+    const act = actions.get(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+    if (!act || !heard) return;
     event.preventDefault();
     act();
   });
+}
+
+/** The keys with what they do, for the help. */
+export function describeKeys(/** @type {Key[]} */ keys) {
+  return keys.flatMap(({ key, shown = key.toUpperCase(), does }) => (does ? [{ keys: shown, does }] : []));
 }

@@ -1,3 +1,11 @@
 import { App } from './app.js';
+import { byId } from './dom.js';
+import { workOffline } from './offline.js';
+import { canCompute } from './support.js';
 
-new App().openSample('duck');
+if (canCompute()) new App().start();
+else {
+  byId('app', HTMLElement).dataset.state = 'unsupported';
+  byId('no-engine', HTMLElement).hidden = false;
+}
+workOffline();

@@ -1,16 +1,23 @@
-import { Color, DoubleSide, MeshMatcapMaterial, ShaderMaterial } from 'three';
+import { Color, DoubleSide, LineBasicMaterial, MeshMatcapMaterial, ShaderMaterial } from 'three';
 import { studioMatcap } from './matcap.js';
 
 /**
- * The mesh: a matcap, tinted by the theme or by the scan's own colours. Its inner side is darker and warmer, so
- * that one sees which side is which. Triangles that only just turn away, as at every outline, do not count as
- * inner: they would be specks along the rim.
- * @param {{ colored: boolean }} options
+ * The mesh: a matcap, tinted by the theme or by colours of its own; where these are measured values, the studio's light
+ * only hints at the shape. Its inner side is darker and warmer, so that one sees which side is which. Triangles that
+ * only just turn away, as at every outline, do not count as inner: they would be specks along the rim.
  */
-export function meshMaterial({ colored }) {
-  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side: DoubleSide, vertexColors: colored });
+export function meshMaterial() {
+  const material = new MeshMatcapMaterial({ matcap: studioMatcap(), side: DoubleSide });
+  // Behind the edges that may lie on it.
+  Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  const measured = { value: 0 };
+  material.userData.measured = measured;
   material.onBeforeCompile = (shader) => {
+    shader.uniforms.measured = measured;
     shader.fragmentShader = shader.fragmentShader
+      .replace('void main() {', /* glsl */ `
+        uniform float measured;
+        void main() {`)
       .replace('#include <normal_fragment_begin>', /* glsl */ `
         vec3 normal = normalize(vNormal);
         bool inner = !gl_FrontFacing && dot(normal, normalize(vViewPosition)) < -0.06;
@@ -18,30 +25,44 @@ export function meshMaterial({ colored }) {
         vec3 nonPerturbedNormal = normal;`)
       .replace('#include <opaque_fragment>', /* glsl */ `
         if (inner) outgoingLight *= vec3(0.8, 0.72, 0.67);
+        float light = dot(matcapColor.rgb, vec3(0.2126, 0.7152, 0.0722));
+        outgoingLight = mix(outgoingLight, diffuseColor.rgb * (0.78 + 0.3 * light), measured);
         #include <opaque_fragment>`);
   };
   return material;
 }
 
+/** Edges of the triangles, thin over the surface. */
+export function edgeMaterial() {
+  return new LineBasicMaterial({ transparent: true, opacity: 0.42, depthWrite: false });
+}
+
+/** Boxes around parts of the scan: opaque, as the depth pass of the clouds wants it. */
+export function boxMaterial() {
+  return new LineBasicMaterial();
+}
+
 /**
  * Points as round dots whose size follows the distance. With oriented normals they are shaded, and those on
  * the far side fade into the background; without, the depth pass (eye-dome.js) gives them shape. Colours go
- * through as the sRGB values that they are.
- * @param {{ colored: boolean, shaded: boolean, diameter: number }} options  diameter in the viewer's frame
+ * through as the sRGB values that they are, and hardly shaded where they are measured values.
+ * @param {{ shaded: boolean, diameter: number }} options  diameter in the viewer's frame
  */
-export function pointMaterial({ colored, shaded, diameter }) {
+export function pointMaterial({ shaded, diameter }) {
   return new ShaderMaterial({
-    defines: { ...(colored && { COLORED: '' }), ...(shaded && { SHADED: '' }) },
+    defines: { ...(shaded && { SHADED: '' }) },
     uniforms: {
       tint: { value: new Color() },
       background: { value: new Color() },
       diameter: { value: diameter },
       pixelsPerUnit: { value: 1 },
       smallest: { value: 1 },
+      distance: { value: 1 },
+      measured: { value: 0 },
     },
     vertexShader: /* glsl */ `
       uniform vec3 tint, background;
-      uniform float diameter, pixelsPerUnit, smallest;
+      uniform float diameter, pixelsPerUnit, smallest, distance, measured;
       varying vec3 shown;
       varying float near;
       #ifdef COLORED
@@ -50,7 +71,8 @@ export function pointMaterial({ colored, shaded, diameter }) {
       void main() {
         vec4 eye = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * eye;
-        gl_PointSize = clamp(diameter * pixelsPerUnit / -eye.z, smallest, 96.0);
+        bool parallel = projectionMatrix[3][3] == 1.0;
+        gl_PointSize = clamp(diameter * pixelsPerUnit / (parallel ? distance : -eye.z), smallest, 96.0);
         #ifdef COLORED
           shown = color;
         #else
@@ -60,19 +82,21 @@ export function pointMaterial({ colored, shaded, diameter }) {
         #ifdef SHADED
           vec3 n = normalize(normalMatrix * normal);
           float light = 0.5 + 0.5 * dot(n, normalize(vec3(-0.45, 0.75, 0.55)));
-          float facing = dot(n, normalize(-eye.xyz));
+          float facing = dot(n, parallel ? vec3(0.0, 0.0, 1.0) : normalize(-eye.xyz));
           near = smoothstep(-0.15, 0.1, facing);
-          shown = mix(mix(shown, background, 0.88), shown * (0.5 + 0.65 * light), near);
+          shown = mix(mix(shown, background, 0.88), shown * mix(0.5 + 0.65 * light, 1.0, 0.8 * measured), near);
           gl_PointSize *= 0.65 + 0.35 * near;
         #endif
       }`,
     fragmentShader: /* glsl */ `
+      uniform float measured;
       varying vec3 shown;
       varying float near;
       void main() {
         vec2 offset = gl_PointCoord - 0.5;
         if (dot(offset, offset) > 0.25) discard;
-        gl_FragColor = vec4(shown, 0.5 + 0.5 * near); // how much the depth pass may darken it
+        // How much the depth pass may darken it.
+        gl_FragColor = vec4(shown, 0.5 + 0.5 * near * (1.0 - 0.7 * measured));
       }`,
   });
 }

@@ -1,5 +1,7 @@
 import { byId } from './dom.js';
+import { copyText } from './clipboard.js';
 import * as format from './format.js';
+import { countHoles } from './holes.js';
 import { stageWords } from './stages.js';
 
 /** @import { Outcome } from './session.js' */
@@ -13,6 +15,13 @@ export class Numbers {
   #engine = byId('engine', HTMLElement);
   #reason = byId('engine-reason', HTMLElement);
   #stages = byId('stages', HTMLUListElement);
+  #summary = byId('made-summary', HTMLElement);
+  #json = '';
+
+  constructor() {
+    const copy = byId('copy-json', HTMLButtonElement);
+    copy.addEventListener('click', () => copyText(this.#json, copy));
+  }
 
   /** A new scan: only its size is known. */
   opened(/** @type {number} */ inputPoints) {
@@ -20,6 +29,9 @@ export class Numbers {
     this.#set('inputPoints', inputPoints, format.count);
     this.#engine.textContent = '–';
     this.#reason.textContent = '';
+    this.#summary.textContent = '';
+    this.#json = '';
+    byId('copy-json', HTMLButtonElement).disabled = true;
     this.#stages.replaceChildren();
     this.stale();
   }
@@ -29,12 +41,15 @@ export class Numbers {
     this.#box.dataset.fresh = 'false';
   }
 
-  made(/** @type {Outcome} */ { scan, reduced, mesh }) {
+  /** @param {Outcome} outcome @param {object} settings  what was asked for, to be copied with the numbers */
+  made({ scan, reduced, mesh }, settings) {
     const report = mesh?.report ?? reduced.report;
     this.#set('inputPoints', report.inputPoints, format.count);
     this.#set('outputPoints', report.outputPoints, format.count);
     this.#set('triangles', mesh?.report.triangles, format.count);
+    this.#set('reduction', report.outputPoints / report.inputPoints, format.percent);
     this.#set('boundaryEdges', mesh?.report.boundaryEdges, format.count);
+    this.#set('holes', mesh ? holesOf(mesh) : undefined, format.count);
     this.#set('components', mesh?.report.components, format.count);
     this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
     this.#set('totalMs', report.totalMs, format.duration);
@@ -44,7 +59,11 @@ export class Numbers {
       this.#set(`${name}Share`, share, format.percent);
     }
     this.#engine.textContent = engineWords(report);
-    this.#reason.textContent = report.build === 'single' ? `One thread, because ${report.reason}.` : '';
+    this.#reason.textContent = sentence(report.reason);
+    this.#summary.textContent = `${format.duration(report.totalMs)}, ${engineWords(report)}`;
+    const { title, count, frame } = scan;
+    this.#json = JSON.stringify({ scan: { title, count, size: frame.size, diagonal: frame.diagonal }, settings, report }, null, 2);
+    byId('copy-json', HTMLButtonElement).disabled = false;
     this.#showStages(report.ms);
     this.#box.dataset.fresh = 'true';
   }
@@ -71,6 +90,15 @@ export class Numbers {
       }),
     );
   }
+}
+
+/** Open borders cost a look at every edge, so only where there are some. */
+function holesOf(/** @type {import('pointweave').SurfaceMesh} */ { report, indices, positions }) {
+  return report.boundaryEdges ? countHoles(indices, positions.length / 3) : 0;
+}
+
+function sentence(/** @type {string} */ reason) {
+  return reason && `${reason[0].toUpperCase()}${reason.slice(1)}.`;
 }
 
 function engineWords(/** @type {{ build: string, threads: number }} */ { build, threads }) {

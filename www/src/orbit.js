@@ -21,6 +21,18 @@ const UPS = [
   { name: '−X', rotation: quarter(0, -1) },
 ];
 
+/** Sides to look at straight, with the camera's angles around the upright axis and down from it. */
+const SIDES = {
+  front: [0, Math.PI / 2],
+  back: [Math.PI, Math.PI / 2],
+  right: [Math.PI / 2, Math.PI / 2],
+  left: [-Math.PI / 2, Math.PI / 2],
+  top: [0, 1e-4],
+  bottom: [0, Math.PI - 1e-4],
+};
+
+/** @typedef {keyof typeof SIDES} Side */
+
 /** A camera move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, start: number }} Flight */
 
 /** How the person moves around the scan: pointer, keys, and the moves of the buttons. */
@@ -31,10 +43,13 @@ export class Orbit {
   #controls;
   #calm = matchMedia('(prefers-reduced-motion: reduce)');
   #up = 0;
+  /** Whether lines that are parallel look parallel: an orthographic projection instead of perspective. */
+  #parallel = false;
   /** @type {Float32Array} a few points of the scan, in the viewer's frame */
   #outline = new Float32Array();
   /** @type {Flight | null} */
   #flight = null;
+  #updating = false;
 
   /**
    * @param {import('three').PerspectiveCamera} camera
@@ -51,7 +66,10 @@ export class Orbit {
     this.#controls.maxDistance = 12;
     this.#controls.zoomSpeed = 1.4;
     this.#controls.addEventListener('start', () => (this.#flight = null));
-    this.#controls.addEventListener('change', changed);
+    // What moves while a picture is made is in that picture; only a movement that dies away needs another.
+    this.#controls.addEventListener('change', () => {
+      if (!this.#updating || this.#controls.enableDamping) changed();
+    });
     const follow = () => (this.#controls.enableDamping = !this.#calm.matches);
     this.#calm.addEventListener('change', follow);
     follow();
@@ -81,10 +99,34 @@ export class Orbit {
   fit({ animated = true } = {}) {
     const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
     const to = new Spherical().setFromVector3(direction.multiplyScalar(this.#distanceToFit(direction)));
-    if (!animated || this.#calm.matches) return this.#place(to, new Vector3());
-    const from = new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#controls.target));
-    this.#flight = { from, to, target: this.#controls.target.clone(), start: performance.now() };
+    this.#go(to, animated);
+  }
+
+  get parallel() {
+    return this.#parallel;
+  }
+
+  /** From the camera to what it turns around. */
+  get distance() {
+    return this.#controls.getDistance();
+  }
+
+  /** Perspective, or parallel lines; what is at the centre keeps its size. */
+  setParallel(/** @type {boolean} */ parallel) {
+    this.#parallel = parallel;
     this.#changed();
+  }
+
+  /** Looks straight at one side, in parallel projection, with the whole scan in the picture. */
+  look(/** @type {Side} */ side) {
+    const [theta, phi] = SIDES[side];
+    this.#parallel = true;
+    const from = this.#spherical();
+    // The shorter way round.
+    const turn = ((((theta - from.theta) % (2 * Math.PI)) + 3 * Math.PI) % (2 * Math.PI)) - Math.PI;
+    const to = new Spherical(1, phi, from.theta + turn);
+    to.radius = this.#distanceToFit(new Vector3().setFromSpherical(to));
+    this.#go(to);
   }
 
   /** Turns around the scan. @param {number} right @param {number} over  radians */
@@ -105,17 +147,28 @@ export class Orbit {
   /** Goes on with a movement under way; called once before each picture. */
   update() {
     if (this.#flight) this.#fly(this.#flight);
+    this.#updating = true;
     this.#controls.update();
+    this.#updating = false;
     const distance = this.#camera.position.length();
-    this.#camera.near = Math.max(distance * 0.005, distance - 1);
+    this.#camera.near = this.#parallel ? distance - 1 : Math.max(distance * 0.005, distance - 1);
     this.#camera.far = distance + 1;
     this.#camera.updateProjectionMatrix();
+    if (this.#parallel) flatten(this.#camera, this.distance);
+  }
+
+  /** Moves the camera to a place from which it looks at the middle. */
+  #go(/** @type {Spherical} */ to, animated = true) {
+    if (!animated || this.#calm.matches) return this.#place(to, new Vector3());
+    this.#flight = { from: this.#spherical(), to, target: this.#controls.target.clone(), start: performance.now() };
+    this.#changed();
   }
 
   #fly(/** @type {Flight} */ { from, to, target, start }) {
     const t = Math.min(1, (performance.now() - start) / FIT_MS);
     const eased = 1 - (1 - t) ** 3;
-    const place = new Spherical(MathUtils.lerp(from.radius, to.radius, eased), to.phi, to.theta);
+    const mix = (/** @type {'radius' | 'phi' | 'theta'} */ part) => MathUtils.lerp(from[part], to[part], eased);
+    const place = new Spherical(mix('radius'), mix('phi'), mix('theta'));
     if (t === 1) this.#flight = null;
     this.#place(place, target.clone().multiplyScalar(1 - eased));
   }
@@ -148,10 +201,32 @@ export class Orbit {
     const toEye = look.quaternion.invert().multiply(new Quaternion().copy(this.#root.quaternion));
     const point = new Vector3();
     let distance = this.#controls.minDistance;
+    const depth = this.#parallel ? 0 : 1; // in parallel projection nearness makes nothing larger
     for (let i = 0; i < this.#outline.length; i += 3) {
       point.fromArray(this.#outline, i).applyQuaternion(toEye);
-      distance = Math.max(distance, point.z + Math.max(Math.abs(point.x) / tanX, Math.abs(point.y) / tanY));
+      distance = Math.max(distance, depth * point.z + Math.max(Math.abs(point.x) / tanX, Math.abs(point.y) / tanY));
     }
     return distance;
   }
+}
+
+/**
+ * Turns a perspective projection into the parallel one that shows what is `distance` away at the same size. The
+ * camera stays what it is to everything that moves it.
+ * @param {import('three').PerspectiveCamera} camera
+ * @param {number} distance
+ */
+function flatten(camera, distance) {
+  const { near, far, projectionMatrix, projectionMatrixInverse } = camera;
+  const e = projectionMatrix.elements;
+  // x and y are divided by the distance instead of the depth; an off-centre view shifts by as much.
+  e[0] /= distance;
+  e[5] /= distance;
+  [e[12], e[13]] = [-e[8], -e[9]];
+  e[8] = e[9] = 0;
+  e[10] = -2 / (far - near);
+  e[14] = -(far + near) / (far - near);
+  e[11] = 0;
+  e[15] = 1;
+  projectionMatrixInverse.copy(projectionMatrix).invert();
 }

@@ -1,21 +1,31 @@
-import { DEFAULTS, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { createEngine, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { fetchBytes, ownAddress } from './fetching.js';
 import { frameOf } from './frame.js';
+import { SAMPLES } from './samples.js';
+import { Settings, TARGETS } from './settings.js';
 
 /**
- * @import { PointCloud, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
  * @import { Frame } from './frame.js'
+ * @import { SampleName } from './samples.js'
+ * @import { Target } from './settings.js'
  *
- * Where a scan comes from: a title to show, a name to save under, and for a simulated scan its model.
- * @typedef {{ title: string, file: string, model?: 'duck' | 'pig' | 'part' }} Source
+ * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
+ * @typedef {{ title: string, file: string, model?: SampleName, src?: string }} Source
  * @typedef {Source & { cloud: PointCloud, count: number, frame: Frame }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
 
-const DEFAULT_SHARE = /** @type {{ ratio: number }} */ (DEFAULTS.reduce.target).ratio;
 /** The least and the most points that the page keeps of its own accord: enough for a shape, few enough to wait for. */
 const ENOUGH = 2_000;
 const AMPLE = 60_000;
+/** The same for a phone, whose processor and memory are smaller. */
+const AMPLE_ON_PHONE = 20_000;
+const PHONE = '(pointer: coarse) and (max-width: 900px)';
+
+/** Stages whose settings have not changed are not run again. */
+const REMEMBERED = { keep: true };
 
 /** Codes that say: there is no surface here, but the points can still be reduced. */
 const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
@@ -27,38 +37,48 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * `cancelled`, `failed` ({error, title}); the value is the event's `detail`.
  */
 export class Session extends EventTarget {
+  settings = new Settings();
   /** @type {Scan | null} */
   scan = null;
   /** @type {Outcome | null} the last result of the open scan */
   outcome = null;
-  /** The share of the points to keep. */
-  share = DEFAULT_SHARE;
-  #shareChosen = false;
+  /** The options of the last job. */
+  #asked = '';
   /** @type {AbortController | null} */
   #job = null;
+  /** What is computed beside the job, and ends with it. @type {AbortController | null} */
+  #aside = null;
 
   /** Generates one of the package's simulated scans and makes its mesh. */
-  openSample(/** @type {'duck' | 'pig' | 'part'} */ model, /** @type {string} */ title, /** @type {number} */ count) {
+  openSample(/** @type {SampleName} */ model) {
+    const { title, count } = SAMPLES[model];
     return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
   }
 
   /** Reads a file of the person's and makes its mesh. */
   openFile(/** @type {File} */ file) {
-    const name = file.name.replace(/\.[^.]*$/, '') || 'scan';
-    return this.#open({ title: file.name, file: name }, (signal) => read(file, { name: file.name, signal }));
+    const source = { title: file.name, file: stem(file.name) };
+    return this.#open(source, (signal) => read(file, { name: file.name, signal, onProgress: this.#report(signal) }));
   }
 
-  /** Keeps another share of the points: stops what runs and starts again. */
-  async setShare(/** @type {number} */ share) {
-    if (share === this.share) return;
-    this.#shareChosen = true;
-    this.share = share;
-    if (this.scan) await this.run();
+  /** Reads a file beside the page and makes its mesh. */
+  openAddress(/** @type {string} */ src) {
+    const name = src.split('/').at(-1)?.split(/[?#]/)[0] || 'scan';
+    return this.#open({ title: name, file: stem(name), src }, async (signal) => {
+      const onProgress = this.#report(signal);
+      const bytes = await fetchBytes(ownAddress(src), signal, (share) => onProgress({ stage: 'download', overall: share }));
+      return read(bytes, { name, signal, onProgress });
+    });
   }
 
-  /** How many points will be kept: exactly this many. */
-  get keptCount() {
-    return this.scan ? keptOf(this.scan.count, this.share) : 0;
+  /** What is kept: what the person has chosen, or what suits the scan. @returns {Target} */
+  get target() {
+    return this.settings.target ?? { kind: 'ratio', value: this.scan ? startingShare(this.scan.count) : TARGETS.ratio.start };
+  }
+
+  /** Works again if the settings ask for something else than the last job made or makes. */
+  async apply() {
+    if (this.scan && JSON.stringify(this.settings.options(this.target)) !== this.#asked) await this.run();
   }
 
   /** Reduces and meshes the open scan. */
@@ -66,6 +86,7 @@ export class Session extends EventTarget {
     const scan = this.scan;
     if (!scan) return;
     const job = this.#begin('working');
+    this.#asked = JSON.stringify(this.settings.options(this.target));
     try {
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
@@ -80,14 +101,55 @@ export class Session extends EventTarget {
   cancel() {
     if (!this.#job) return;
     this.#job.abort();
+    this.#asked = '';
     this.#end(this.#job, 'cancelled');
   }
 
-  /** The bytes of a PLY file of what was made. */
-  ply(/** @type {'reduced' | 'mesh'} */ what) {
+  /**
+   * How far the mesh is from the scan when other counts of points are kept: one job after the other, until one of
+   * the person's begins. In an engine of its own, so that saving does not wait.
+   * @param {number[]} counts
+   * @param {(count: number, distance: import('pointweave').Distances) => void} found
+   * @returns {Promise<boolean>} whether all were made
+   */
+  async compare(counts, found) {
+    const { scan, settings } = this;
+    if (!scan || this.#job) return false;
+    this.#aside?.abort();
+    const { signal } = (this.#aside = new AbortController());
+    const { reduce: reduction, surface } = settings.options(this.target);
+    const engine = counts.length ? await createEngine() : null;
+    try {
+      for (const count of counts) {
+        const options = { ...surface, reduce: { ...reduction, target: { count } }, ...REMEMBERED, signal };
+        const { report } = await /** @type {import('pointweave').Engine} */ (engine).reconstruct(scan.cloud, options);
+        if (signal.aborted) return false;
+        found(count, report.distance);
+      }
+      return true;
+    } catch (error) {
+      if (signal.aborted) return false;
+      throw error;
+    } finally {
+      await engine?.dispose();
+    }
+  }
+
+  /** Ends {@link compare}. */
+  stopComparing() {
+    this.#aside?.abort();
+    this.#aside = null;
+  }
+
+  /**
+   * The bytes of a file of what was made.
+   * @param {'reduced' | 'mesh'} what
+   * @param {import('pointweave').Format} format
+   */
+  async file(what, format) {
     const result = this.outcome?.[what];
     if (!result) throw new Error(`there is no ${what} to write yet`);
-    return write(result, { format: 'ply' });
+    return write(result, { format });
   }
 
   /**
@@ -103,7 +165,6 @@ export class Session extends EventTarget {
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
       this.scan = { ...source, cloud, count, frame: frameOf(cloud) };
       this.outcome = null;
-      if (!this.#shareChosen) this.share = startingShare(count);
       this.#emit('opened', this.scan);
     } catch (error) {
       this.#end(job, 'failed', { error, title: source.title });
@@ -116,21 +177,30 @@ export class Session extends EventTarget {
 
   /** @returns {Promise<Outcome>} */
   async #make(/** @type {Scan} */ scan, /** @type {AbortSignal} */ signal) {
-    const target = { count: this.keptCount };
-    const onProgress = (/** @type {object} */ progress) => signal.aborted || this.#emit('progress', progress);
+    const { reduce: reduction, surface } = this.settings.options(this.target);
+    const options = { ...reduction, assignment: true, cells: true };
+    const onProgress = this.#report(signal);
     try {
-      const mesh = await reconstruct(scan.cloud, { reduce: { target }, signal, onProgress });
+      const mesh = await reconstruct(scan.cloud, { ...surface, reduce: options, ...REMEMBERED, distances: true, signal, onProgress });
       return { scan, reduced: mesh.cloud, mesh };
     } catch (error) {
       if (signal.aborted || !NO_SURFACE.has(/** @type {any} */ (error).code)) throw error;
-      const reduced = await reduce(scan.cloud, { target, signal });
+      const reduced = await reduce(scan.cloud, { ...options, signal });
       this.#emit('failed', { error, title: scan.title });
       return { scan, reduced, mesh: null };
     }
   }
 
+  /** Passes progress on until the job is aborted. */
+  #report(/** @type {AbortSignal} */ signal) {
+    return (/** @type {Pick<Progress, 'overall'> & { stage: string }} */ progress) => {
+      if (!signal.aborted) this.#emit('progress', progress);
+    };
+  }
+
   #begin(/** @type {State} */ state) {
     this.#job?.abort();
+    this.stopComparing();
     this.#job = new AbortController();
     this.#emit('state', state);
     return this.#job;
@@ -149,13 +219,14 @@ export class Session extends EventTarget {
   }
 }
 
-/** How many of `count` points a share of them is. */
-export function keptOf(/** @type {number} */ count, /** @type {number} */ share) {
-  return Math.max(1, Math.round(count * share));
+/** A file's name without its ending. */
+function stem(/** @type {string} */ name) {
+  return name.replace(/\.[^.]*$/, '') || 'scan';
 }
 
 /** The share to keep of a new scan, until the person has chosen one. */
 function startingShare(/** @type {number} */ count) {
-  const kept = Math.min(AMPLE, Math.max(ENOUGH, count * DEFAULT_SHARE));
+  const ample = matchMedia(PHONE).matches ? AMPLE_ON_PHONE : AMPLE;
+  const kept = Math.min(ample, Math.max(ENOUGH, count * TARGETS.ratio.start));
   return Math.min(1, kept / count);
 }

@@ -1,5 +1,7 @@
 /** The engine's stages, in the words of the page. */
 const WORDS = /** @type {Record<string, string>} */ ({
+  download: 'Fetching the scan',
+  read: 'Reading the file',
   octree: 'Sorting the points',
   features: 'Measuring curvature and noise',
   cluster: 'Choosing the points to keep',

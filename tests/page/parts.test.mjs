@@ -1,0 +1,115 @@
+// Parts of the page that need no browser, against what is known.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { test } from 'node:test';
+import { DEFAULTS, reconstruct, reduce, sample } from 'pointweave';
+import { UNKNOWN, colorAt, colorize } from '../../www/src/colormap.js';
+import { localSpacing } from '../../www/src/density.js';
+import { countHoles } from '../../www/src/holes.js';
+import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/settings.js';
+import { creases, sharpPoints } from '../../www/src/sharp.js';
+import { WORDS } from '../../www/src/words.js';
+
+/** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
+const BLINDNESS = {
+  nobody: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  protanopia: [[0.1124, 0.8876, 0], [0.1124, 0.8876, 0], [0.004, -0.004, 1]],
+  deuteranopia: [[0.2928, 0.7072, 0], [0.2928, 0.7072, 0], [-0.0223, 0.0223, 1]],
+  tritanopia: [[1.0126, 0.1346, -0.1472], [-0.0116, 0.8692, 0.1424], [0.0774, 0.8841, 0.0385]],
+};
+
+const linear = (byte) => (byte / 255 <= 0.04045 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
+const luminance = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+
+test('the colour map gets lighter evenly, for everybody', () => {
+  for (const [who, matrix] of Object.entries(BLINDNESS)) {
+    const light = Array.from({ length: 33 }, (_, i) => {
+      const color = colorAt(i / 32).map(linear);
+      return Math.cbrt(luminance(matrix.map((row) => row.reduce((sum, m, c) => sum + m * color[c], 0))));
+    });
+    const steps = light.slice(1).map((value, i) => value - light[i]);
+    const mean = (light.at(-1) - light[0]) / steps.length;
+    for (const step of steps) assert.ok(step > 0.3 * mean && step < 2 * mean, `${who}: ${steps}`);
+  }
+});
+
+test('values take their colours, those beyond the ends the ends, and unknown ones grey', () => {
+  const colors = colorize([0, 5, 10, -3, 99, NaN], 0, 10);
+  const at = (i) => [...colors.subarray(3 * i, 3 * i + 3)];
+  assert.deepEqual(at(0), colorAt(0));
+  assert.deepEqual(at(2), colorAt(1));
+  assert.deepEqual([at(3), at(4), at(5)], [at(0), at(2), [...UNKNOWN]]);
+  at(1).forEach((value, c) => assert.ok(Math.abs(value - colorAt(0.5)[c]) <= 3));
+});
+
+test('the spacing of a plane of points is found, whichever way it lies', () => {
+  for (const spacing of [0.004, 0.02]) {
+    for (const [a, b] of [[[1, 0, 0], [0, 1, 0]], [[0, 1, 0], [0, 0, 1]], [[0.6, 0.8, 0], [0, 0, 1]], [[0.36, 0.48, 0.8], [0.8, -0.6, 0]]]) {
+      const points = [];
+      for (let x = -0.3; x < 0.3; x += spacing) for (let y = -0.3; y < 0.3; y += spacing) points.push(...[0, 1, 2].map((axis) => a[axis] * x + b[axis] * y));
+      const found = [...localSpacing(Float32Array.from(points))].sort((p, q) => p - q);
+      const median = found[found.length >> 1];
+      assert.ok(Math.abs(median / spacing - 1) < 0.08, `${median} of ${spacing}`);
+    }
+  }
+});
+
+test('holes are counted by their rims', () => {
+  const grid = (has) => {
+    const triangles = [];
+    for (let x = 0; x < 8; x++) for (let y = 0; y < 8; y++) {
+      const v = (dx, dy) => (x + dx) * 9 + y + dy;
+      if (has(x, y)) triangles.push(v(0, 0), v(1, 0), v(1, 1), v(0, 0), v(1, 1), v(0, 1));
+    }
+    return Uint32Array.from(triangles);
+  };
+  assert.equal(countHoles(grid(() => true), 81), 1);
+  assert.equal(countHoles(grid((x, y) => !(x === 2 && y === 2)), 81), 2);
+  assert.equal(countHoles(grid((x, y) => !(y === 4) && !(x === 2 && y === 2) && !(x === 6 && y === 6)), 81), 4);
+  assert.equal(countHoles(Uint32Array.of(0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2), 4), 0);
+});
+
+test('sharp places are on the edges of the part, and hardly anywhere on the duck', async () => {
+  const share = (flags) => flags.reduce((sum, is) => sum + is, 0) / flags.length;
+  const scanOf = (cloud) => ({ cloud, count: cloud.positions.length / 3, frame: { diagonal: 16 } });
+  const [part, duck] = await Promise.all(['part', 'duck'].map((model) => sample(model, { count: 12_000 })));
+  const [edges, feathers] = await Promise.all([part, duck].map((cloud) => reduce(cloud)));
+  assert.ok(share(sharpPoints(edges, scanOf(part))) > 4 * share(sharpPoints(feathers, scanOf(duck))));
+  assert.ok(share(creases(await reconstruct(part))) > 4 * share(creases(await reconstruct(duck))));
+  // A flatness target keeps samples as they are: these count as sharp.
+  const flat = await reduce(part, { target: { flatness: 6e-4 } });
+  const flags = sharpPoints(flat, scanOf(part));
+  const kept = [...flat.weights].filter((weight, i) => weight === 1
+    && [0, 1, 2].every((axis) => Math.abs(flat.positions[3 * i + axis] - part.positions[3 * flat.nearest[i] + axis]) < 1e-5)).length;
+  assert.ok(kept > 100 && share(flags) * flags.length >= kept, `${kept} kept`);
+});
+
+test('settings: defaults are the package\'s, and an address brings back what was chosen', () => {
+  for (const key of Object.keys(CONTROLS)) assert.equal(defaultOf(key), DEFAULTS[CONTROLS[key].in][key], key);
+  assert.equal(TARGETS.ratio.start, DEFAULTS.reduce.target.ratio);
+  const chosen = new Settings();
+  assert.equal(chosen.changed, false);
+  chosen.target = { kind: 'tolerance', value: 0.002 };
+  chosen.set('method', 'paper');
+  chosen.set('fuzzifier', 1.8);
+  chosen.set('sharp', false);
+  chosen.set('accuracy', DEFAULTS.reconstruct.accuracy); // the default is no choice
+  const again = new Settings();
+  again.read(new URLSearchParams(chosen.entries()));
+  assert.deepEqual([again.target, again.values], [chosen.target, chosen.values]);
+  assert.deepEqual(again.options(again.target), {
+    reduce: { target: { tolerance: 0.002 }, method: 'paper', fuzzifier: 1.8 }, surface: { sharp: false },
+  });
+  again.read(new URLSearchParams('ratio=7&count=1.5&tolerance=&method=none&fuzzifier=x&sharp=maybe&toString=1&__proto__=2'));
+  assert.equal(again.changed, false, 'nonsense is left out');
+});
+
+test('every error code of the package has its words', async () => {
+  const types = await readFile(new URL('../../pkg/types.d.ts', import.meta.url), 'utf8');
+  const codes = /type ErrorCode =([^;]*);/.exec(types)[1].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1));
+  assert.ok(codes.length >= 12);
+  for (const code of codes) {
+    assert.ok(WORDS[code]?.title && WORDS[code].text && WORDS[code].advice, `no words for ${code}`);
+  }
+});

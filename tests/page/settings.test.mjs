@@ -1,0 +1,161 @@
+// Settings, their address, what they cost, the numbers and the files: as a person who knows more uses the page.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { test } from 'node:test';
+import { CONTROLS } from '../../www/src/settings.js';
+import { PATIENCE, start } from './browser.mjs';
+import { spherePoints, toPly } from './scans.mjs';
+
+/** A shallow bowl, open above: one border. */
+const RIM = -0.4;
+const bowl = spherePoints(20_000).filter(([, , z]) => z < RIM);
+const WIDTH = 2 * Math.sqrt(1 - RIM ** 2);
+const DIAGONAL = Math.hypot(WIDTH, WIDTH, 1 + RIM);
+
+test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
+  const server = await start(t);
+  const options = { permissions: ['clipboard-read', 'clipboard-write'] };
+  const site = await server.open(options, undefined, `?src=${server.serve('bowl.ply', toPly(bowl))}#ratio=0.25`);
+  const { page } = site;
+  await site.opened('bowl.ply');
+  const hash = () => page.evaluate(() => location.hash);
+  const stages = () => page.$$eval('#stages data', (rows) => rows.map((row) => row.dataset.stage));
+  const count = bowl.length;
+
+  await t.test('numbers: what came out of how much', async () => {
+    assert.equal(await site.number('outputPoints'), Math.round(count / 4));
+    assert.equal(await site.number('reduction'), Math.round(count / 4) / count);
+    assert.equal(await site.number('holes'), 1);
+    assert.ok((await site.number('boundaryEdges')) > 20);
+    const [error, share] = [await site.number('errorRms'), await site.number('errorRmsShare')];
+    assert.ok(Math.abs(error / share / DIAGONAL - 1) < 0.02, 'in file units and of the diagonal');
+
+    await page.click('#made > summary');
+    await page.click('#copy-json');
+    await page.waitForFunction(() => document.querySelector('#copy-json').textContent === 'Copied');
+    const { scan, settings, report } = JSON.parse(await page.evaluate(() => navigator.clipboard.readText()));
+    assert.equal(scan.count, count);
+    assert.deepEqual(settings, { reduce: { target: { ratio: 0.25 } }, surface: {} });
+    assert.equal(report.outputPoints, Math.round(count / 4));
+    assert.equal(report.distance.rms, share);
+  });
+
+  await t.test('every option has a control, and one that only shapes the surface does not reduce again', async () => {
+    await page.click('#more > summary');
+    for (const key of Object.keys(CONTROLS)) assert.ok(await page.isVisible(`#option-${key}`), key);
+    assert.ok((await stages()).includes('cluster'));
+    await site.remade(() => page.selectOption('#option-boundary', 'closed'));
+    assert.equal(await site.number('holes'), 0, 'all holes are closed');
+    const again = await stages();
+    assert.ok(again.includes('fit') && !again.includes('cluster') && !again.includes('features'), `only the surface: ${again}`);
+    assert.match(await hash(), /ratio=0\.25&boundary=closed/);
+
+    const mean = await site.number('errorMean');
+    await site.remade(() => page.fill('#option-smoothing', '50'));
+    assert.ok((await site.number('errorMean')) > mean, 'smoothing moves the surface away from the points');
+    await site.remade(() => page.fill('#option-smoothing', ''));
+    assert.equal(await site.number('errorMean'), mean, 'and back to what follows the noise');
+
+    await site.remade(() => page.selectOption('#option-method', 'paper'));
+    const paper = await stages();
+    assert.ok(paper.includes('cluster') && !paper.includes('features'), `what was measured stays: ${paper}`);
+    assert.equal(await page.getAttribute('#option-fuzzifier', 'placeholder'), '2', 'the default follows the method');
+  });
+
+  await t.test('the four ways to say how much', async () => {
+    await site.remade(() => page.click('#reset'));
+    assert.ok(await page.isDisabled('#reset'));
+    assert.equal(await hash(), '');
+    assert.equal(await site.number('outputPoints'), 2000, 'what suits this scan');
+
+    await page.selectOption('#target-kind', 'count');
+    await site.remade(() => page.fill('#keep-field', '777'));
+    assert.equal(await site.number('outputPoints'), 777);
+    await site.remade(() => page.selectOption('#target-kind', 'ratio'));
+    await site.remade(() => page.selectOption('#target-kind', 'tolerance'));
+    assert.match(await page.innerText('#keep-count'), new RegExp(`within ${(1e-3 * DIAGONAL).toPrecision(3)}`));
+    const within = await site.number('outputPoints');
+    await site.remade(() => page.fill('#keep-field', '1'));
+    assert.ok((await site.number('outputPoints')) < within, 'ten times the tolerance, fewer points');
+    await site.remade(() => page.selectOption('#target-kind', 'flatness'));
+    assert.match(await hash(), /^#flatness=/);
+
+    // What cannot be is said, and nothing starts.
+    await page.selectOption('#target-kind', 'ratio');
+    await site.made();
+    await page.fill('#keep-field', '250');
+    assert.equal(await page.$eval('#keep-field', (field) => field.validity.valid), false);
+    assert.equal(await page.getAttribute('#app', 'data-state'), 'ready');
+  });
+
+  await t.test('the address brings all of it back, and a new one is followed', async () => {
+    await page.evaluate(() => (location.hash = '#count=900&sharp=false&view=compare&colors=density'));
+    await page.waitForFunction(() => document.querySelector('[data-number="outputPoints"]').value === '900', null, { timeout: PATIENCE });
+    await site.made();
+    const check = async () => {
+      assert.equal(await site.view(), 'compare');
+      assert.equal(await page.isChecked('input[name="paint"][value="density"]'), true);
+      assert.equal(await page.isChecked('#option-sharp'), false);
+      assert.equal(await site.number('outputPoints'), 900);
+    };
+    await check();
+    const link = await page.inputValue('#share-link');
+    await page.goto('about:blank');
+    await page.goto(link);
+    await site.opened('bowl.ply');
+    await check();
+    assert.match(await page.inputValue('#share-embed'), /<point-weave src="bowl-mesh.glb" alt="bowl.ply, a 3D model"/);
+  });
+
+  await t.test('error against count, and a dot that is chosen', async () => {
+    await page.click('#comparison > summary');
+    await page.waitForFunction(() => /Each dot/.test(document.querySelector('#chart-note').textContent), null, { timeout: PATIENCE });
+    const dots = await page.$$eval('#chart .dot', (all) => all.map((dot) => dot.getAttribute('aria-label')));
+    const counts = dots.map((words) => Number(words.split(' ')[0].replace(',', '')));
+    const errors = dots.map((words) => Number(/([\d.]+) % of/.exec(words)[1]));
+    assert.ok(counts.length >= 3 && counts.includes(900), `${counts}`);
+    assert.deepEqual(counts, counts.toSorted((a, b) => a - b));
+    assert.ok(errors[0] > 2 * errors.at(-1), `fewer points are further away: ${errors}`);
+    await page.focus('#chart .dot');
+    await site.remade(() => page.keyboard.press('Enter'));
+    assert.equal(await site.number('outputPoints'), counts[0]);
+    assert.equal(await page.$$eval('#chart .dot', (all) => all.length), counts.length, 'the others are still known');
+    await page.click('#comparison > summary');
+  });
+
+  await t.test('every format: its size first, and what is in it', async () => {
+    await page.click('#formats > summary');
+    await page.waitForSelector('#save-reduced-xyz');
+    const [triangles, kept] = [await site.number('triangles'), await site.number('outputPoints')];
+    const count = (pattern) => (bytes) => bytes.toString('latin1').match(pattern)?.length ?? 0;
+    const glb = (bytes) => {
+      assert.equal(bytes.toString('latin1', 0, 4), 'glTF');
+      const { accessors, meshes } = JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
+      const { indices, attributes } = meshes[0].primitives[0];
+      return indices === undefined ? accessors[attributes.POSITION].count : accessors[indices].count / 3;
+    };
+    const header = (element) => (bytes) => Number(new RegExp(`element ${element} (\\d+)`).exec(bytes.toString('latin1', 0, 2000))[1]);
+    const holds = {
+      'mesh-glb': [glb, triangles], 'mesh-ply': [header('face'), triangles], 'mesh-obj': [count(/^f /gm), triangles],
+      'mesh-stl': [(bytes) => bytes.readUInt32LE(80), triangles],
+      'reduced-ply': [header('vertex'), kept], 'reduced-glb': [glb, kept], 'reduced-xyz': [count(/^[-\d]/gm), kept],
+    };
+    assert.deepEqual((await page.$$eval('.format', (rows) => rows.map((row) => row.id.slice(5)))).sort(), Object.keys(holds).sort());
+    for (const [id, [read, expected]] of Object.entries(holds)) {
+      const size = Number(await page.getAttribute(`#save-${id} data`, 'value'));
+      const saved = page.waitForEvent('download');
+      await page.click(`#save-${id}`);
+      const bytes = await readFile(await (await saved).path());
+      assert.equal(bytes.length, size, id);
+      assert.equal(read(bytes), expected, id);
+    }
+    // The one button takes what most people need.
+    assert.match(await page.innerText('#save'), /GLB/);
+    const saved = page.waitForEvent('download');
+    await page.click('#save');
+    assert.equal((await saved).suggestedFilename(), 'bowl-mesh.glb');
+  });
+
+  assert.deepEqual(site.faults, []);
+});
