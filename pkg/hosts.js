@@ -4,7 +4,7 @@
  */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
-import { PointweaveError } from './errors.js';
+import { PointweaveError, isFatal } from './errors.js';
 
 /** @import { Build, Progress } from './types.js' */
 /** @import { CoreOptions, Glue, Request } from './core.js' */
@@ -42,32 +42,40 @@ const POOL_LIMIT_MS = 30_000;
  */
 export async function inProcessHost(glue, options) {
   const core = await Core.start(glue, options);
-  let usable = true;
+  let ended = false;
   return {
-    async run(request, { signal, onProgress }) {
+    async run(request, watch) {
       await nextTask(); // timers and events between two calls get their turn: an abort among them is seen
-      signal?.throwIfAborted();
-      /** @type {{ error: unknown } | undefined} */
-      let stopped;
-      try {
-        return core.run(request, (progress) => {
-          try {
-            onProgress?.(progress);
-            signal?.throwIfAborted();
-          } catch (error) {
-            stopped = { error };
-          }
-          return stopped !== undefined;
-        });
-      } catch (error) {
-        if (stopped) throw stopped.error;
-        usable = !isFatal(error);
-        throw error;
-      }
+      watch.signal?.throwIfAborted();
+      return runHere(core, request, watch);
     },
-    usable: () => usable,
-    end: () => void (usable = false),
+    usable: () => core.alive && !ended,
+    end: () => void (ended = true),
   };
+}
+
+/**
+ * Does a request in this thread, which hears of an abort only when it comes from `onProgress`.
+ * @param {Core} core
+ * @param {Request} request
+ * @param {Watch} watch
+ */
+export function runHere(core, request, { signal, onProgress }) {
+  /** @type {{ error: unknown } | undefined} */
+  let stopped;
+  try {
+    return core.run(request, (progress) => {
+      try {
+        onProgress?.(progress);
+        signal?.throwIfAborted();
+      } catch (error) {
+        stopped = { error };
+      }
+      return stopped !== undefined;
+    });
+  } catch (error) {
+    throw stopped ? stopped.error : error;
+  }
 }
 
 /**
@@ -75,7 +83,7 @@ export async function inProcessHost(glue, options) {
  * @param {CoreOptions & { threads: number }} options
  * @returns {Promise<Host>}
  */
-export async function workerHost(startWorker, { build, threads, module }) {
+export async function workerHost(startWorker, { build, threads, module, memory }) {
   /** The first computes, the others lend it their threads. */
   const workers = [connect(startWorker())];
   const [main] = workers;
@@ -91,7 +99,7 @@ export async function workerHost(startWorker, { build, threads, module }) {
   };
 
   const start = async () => {
-    const memory = await main.ask({ start: { build, module } });
+    await main.ask({ start: { build, module, memory } });
     if (build === 'single') return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
@@ -147,13 +155,17 @@ export async function workerHost(startWorker, { build, threads, module }) {
 function connect(worker) {
   /** @type {{ resolve: (value: any) => void, reject: (error: unknown) => void, progress?: (progress: Progress) => void }} */
   let asked = { resolve() {}, reject() {} };
+  let started = false;
   worker.listen(
     (message) => {
+      started = true;
       if ('progress' in message) asked.progress?.(message.progress);
       else if ('error' in message) asked.reject(new PointweaveError(message.error));
       else asked.resolve(message.value);
     },
-    (why) => asked.reject(new PointweaveError({ code: 'internal', message: `the worker died: ${why}` })),
+    (why) => asked.reject(started
+      ? new PointweaveError({ code: 'internal', message: `the worker died: ${why}` })
+      : new PointweaveError({ code: 'load-failed', message: `the worker did not start: ${why}` })),
   );
   return {
     /**
@@ -174,14 +186,6 @@ function connect(worker) {
     hold: worker.hold,
     terminate: worker.terminate,
   };
-}
-
-/**
- * Whether an instance that threw this must not be called again.
- * @param {unknown} error
- */
-function isFatal(error) {
-  return !(error instanceof PointweaveError) || error.code === 'internal' || error.code === 'out-of-memory';
 }
 
 /** Resolves after the events that are already waiting. */
