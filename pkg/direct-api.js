@@ -1,4 +1,5 @@
 /** Synchronous calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. */
+import { awake } from './awake.js';
 import { bytesHere, cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
@@ -28,8 +29,7 @@ const ARGUMENTS = {
 export function makeLoad(platform) {
   return async (options) => {
     const { wasmUrl } = checkCoreOptions(options);
-    const [module, glue] = await Promise.all([platform.compile('single', wasmUrl), platform.loadGlue('single')]);
-    const core = await Core.start(glue, { build: 'single', module });
+    const core = await awake(start(platform, wasmUrl));
     const calls = Object.entries(ARGUMENTS).map(([call, args]) => [
       call,
       (/** @type {any} */ subject, /** @type {any} */ options) =>
@@ -37,6 +37,15 @@ export function makeLoad(platform) {
     ]);
     return Object.fromEntries(calls);
   };
+}
+
+/**
+ * @param {Parameters<typeof makeLoad>[0]} platform
+ * @param {import('./types.js').EngineOptions['wasmUrl']} wasmUrl
+ */
+async function start(platform, wasmUrl) {
+  const [module, glue] = await Promise.all([platform.compile('single', wasmUrl), platform.loadGlue('single')]);
+  return Core.start(glue, { build: 'single', module });
 }
 
 /**

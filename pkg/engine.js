@@ -2,6 +2,7 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
  * that does them.
  */
+import { awake } from './awake.js';
 import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
@@ -156,7 +157,7 @@ export class Engine {
     this.#calls++;
     clearTimeout(this.#idle);
     try {
-      return await work();
+      return await awake(work());
     } finally {
       this.#calls--;
       if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {

@@ -80,27 +80,32 @@ export function runHere(core, request, { signal, onProgress }) {
 
 /**
  * @param {() => WorkerLike} startWorker
- * @param {CoreOptions & { threads: number }} options
+ * @param {CoreOptions & { threads: number, poolLimitMs?: number }} options
  * @returns {Promise<Host>}
  */
-export async function workerHost(startWorker, { build, threads, module, memory }) {
+export async function workerHost(startWorker, { build, threads, module, memory, poolLimitMs = POOL_LIMIT_MS }) {
   /** The first computes, the others lend it their threads. */
   const workers = [connect(startWorker())];
   const [main] = workers;
   let alive = true;
   const end = () => {
+    if (!alive) return;
     alive = false;
     for (const worker of workers) worker.terminate();
   };
+  /** @type {(error: unknown) => void} */
+  let fail = () => {};
+  const dead = new Promise((_, reject) => (fail = reject));
+  dead.catch(() => {}); // whoever waits for it hears of it
   /** @param {unknown} error */
   const die = (error) => {
     end();
-    main.fail(error);
+    fail(error);
   };
 
   const start = async () => {
     await main.ask({ start: { build, module, memory } });
-    if (build === 'single') return;
+    if (build === 'single' || !alive) return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
     await Promise.all(pool.map((worker) => worker.ask({ start: { build, module, memory } })));
@@ -109,11 +114,11 @@ export async function workerHost(startWorker, { build, threads, module, memory }
   };
 
   const late = build === 'threads' && setTimeout(() => {
-    die(new PointweaveError({ code: 'internal', message: `no pool within ${POOL_LIMIT_MS / 1000} s` }));
-  }, POOL_LIMIT_MS);
+    die(new PointweaveError({ code: 'internal', message: `no pool within ${poolLimitMs / 1000} s` }));
+  }, poolLimitMs);
   main.hold(true);
   try {
-    await start();
+    await Promise.race([start(), dead]);
   } catch (error) {
     end();
     throw error;
@@ -128,13 +133,14 @@ export async function workerHost(startWorker, { build, threads, module, memory }
       signal?.addEventListener('abort', abort);
       main.hold(true);
       try {
-        return await main.ask({ request }, (progress) => {
+        const answer = main.ask({ request }, (progress) => {
           try {
-            onProgress?.(progress);
+            if (alive) onProgress?.(progress);
           } catch (error) {
             die(error);
           }
         });
+        return await Promise.race([answer, dead]);
       } catch (error) {
         if (isFatal(error)) end();
         throw error;
@@ -178,11 +184,6 @@ function connect(worker) {
         asked = { resolve, reject, progress };
         worker.post(message, buffersOf(message));
       }),
-    /** Rejects the question under way. @param {unknown} error */
-    fail(error) {
-      asked.progress = undefined;
-      asked.reject(error);
-    },
     hold: worker.hold,
     terminate: worker.terminate,
   };

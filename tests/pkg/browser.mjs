@@ -29,6 +29,9 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'applic
 const HTML = `<!doctype html><title>test</title><link rel="icon" href="data:,">
 <script type="importmap" nonce="map">{ "imports": { "pointweave": "/pointweave/index.js" } }</script>`;
 
+/** Of a server whose files other origins may have. */
+export const OPEN = { 'Access-Control-Allow-Origin': '*', 'Cross-Origin-Resource-Policy': 'cross-origin' };
+
 export const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
 const STRICT = {
   'Content-Security-Policy': "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-map'; worker-src 'self'; connect-src 'self'; img-src data:",
@@ -46,11 +49,17 @@ export async function openPage(t, { isolated = true, strict = false, prepare = a
   return page;
 }
 
-/** An empty page in a Chromium of its own, which ends with the test. */
-export async function newPage(t, flags = []) {
+/** A Chromium that ends with the test, or the file of tests. */
+export async function openBrowser({ after }, flags = []) {
   const executablePath = found(CHROMIUM, 'Chromium', 'CHROMIUM');
   const browser = await chromium.launch({ executablePath, args: [...FLAGS, ...flags] });
-  t.after(() => browser.close());
+  after(() => browser.close());
+  return browser;
+}
+
+/** An empty page in a Chromium of its own, which ends with the test. */
+export async function newPage(t, flags = []) {
+  const browser = await openBrowser({ after: (end) => t.after(end) }, flags);
   const page = await browser.newPage();
   page.on('pageerror', (error) => t.diagnostic(`page: ${error}`));
   return page;

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
 import { rm } from 'node:fs/promises';
-import test, { before } from 'node:test';
+import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
@@ -15,19 +15,12 @@ const ENVIRONMENT = { ...process.env, NEXT_TELEMETRY_DISABLED: '1', NO_COLOR: '1
 
 /** Runs a program of the consumers' own in a folder of theirs. */
 const build = (name, ...program) =>
-  run(process.execPath, program.map((word) => word.replace(/^bin:/, fileURLToPath(folder("node_modules")))), { cwd: fileURLToPath(folder(name)), env: ENVIRONMENT });
+  run(process.execPath, program.map((word) => word.replace(/^bin:/, fileURLToPath(new URL('node_modules', CONSUMERS)))), { cwd: fileURLToPath(folder(name)), env: ENVIRONMENT });
+
+await install((await pack({ after })).file);
 
 /** What Node says: all others have to say the same. */
-let expected = { hashes: [], reasons: [] };
-
-before(async (t) => {
-  const end = [];
-  const { file } = await pack({ after: (action) => end.push(action) });
-  await install(file);
-  await Promise.all(end.map((action) => action()));
-  const { stdout } = await build('node', 'main.js');
-  expected = JSON.parse(stdout);
-});
+const expected = JSON.parse((await build('node', 'main.js')).stdout);
 
 /** @param {any} said by a page */
 function checkResult(said) {
