@@ -36,6 +36,16 @@ export function resultArgument(result, transfer) {
  */
 export async function bytesArgument(data, transfer) {
   if (typeof Blob !== 'undefined' && data instanceof Blob) return new Uint8Array(await data.arrayBuffer());
+  return bytesHere(data, transfer);
+}
+
+/**
+ * Bytes that need no waiting for.
+ * @param {unknown} data
+ * @param {boolean} [transfer]
+ * @returns {Uint8Array}
+ */
+export function bytesHere(data, transfer) {
   if (data instanceof ArrayBuffer) return own(new Uint8Array(data), transfer);
   if (ArrayBuffer.isView(data)) return own(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), transfer);
   throw badInput('data', 'a File, Blob, ArrayBuffer or Uint8Array', data);

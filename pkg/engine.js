@@ -2,11 +2,14 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
  * that does them.
  */
+import { awake } from './awake.js';
 import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
 import { compressorFor } from './compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
+import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { signed } from './reports.js';
 
 /** @import { Build, EngineOptions } from './types.js' */
 /** @import { Host, Watch, WorkerLike } from './hosts.js' */
@@ -20,23 +23,37 @@ import { checkEngineOptions, checkModel, checkOptions } from './options.js';
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
  * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
  * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
- * @property {() => WorkerLike} startWorker
+ * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
 /** More threads than this cost memory and gain nothing. */
 const MOST_AUTO_THREADS = 16;
+
+/** How long a host without a call keeps its workers and memory; to start anew takes some tenths of a second. */
+const IDLE_MS = 60_000;
+
+/** A timer of longer than this would fire at once. */
+const LONGEST_TIMER_MS = 2 ** 31 - 1;
 
 export class Engine {
   /** @type {Platform} */
   #platform;
   #worker;
   #wasmUrl;
+  #workerUrl;
+  #idleMs;
   /** What computes, and why. @type {ReturnType<typeof chooseBuild>} */
   #choice;
+  /** What else is to be said of it. */
+  #note = '';
   /** Ends when the last call of the queue has. @type {Promise<unknown>} */
   #tail = Promise.resolve();
   /** @type {Promise<Host> | undefined} */
   #host;
+  /** Calls that have not ended. */
+  #calls = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #idle;
   #disposal = new AbortController();
 
   /**
@@ -45,10 +62,12 @@ export class Engine {
    * @param {EngineOptions} [options]
    */
   constructor(platform, options) {
-    const { threads = 'auto', worker, wasmUrl } = checkEngineOptions(options);
+    const { threads = 'auto', worker, wasmUrl, workerUrl, idleMs = IDLE_MS } = checkEngineOptions(options);
     this.#platform = platform;
     this.#worker = worker;
     this.#wasmUrl = wasmUrl;
+    this.#workerUrl = workerUrl;
+    this.#idleMs = idleMs;
     this.#choice = chooseBuild(platform, threads, worker);
   }
 
@@ -61,7 +80,7 @@ export class Engine {
   }
 
   get reason() {
-    return this.#choice.reason;
+    return [this.#choice.reason, this.#note].filter(Boolean).join('; ');
   }
 
   /** @param {any} cloud @param {any} [options] */
@@ -108,19 +127,48 @@ export class Engine {
   async dispose() {
     if (this.#disposal.signal.aborted) return;
     this.#disposal.abort(new PointweaveError({ code: 'disposed', message: 'the engine was disposed of' }));
-    const host = this.#host;
-    this.#host = undefined;
-    await host?.then((started) => started.end(), nothing);
+    clearTimeout(this.#idle);
+    await this.#endHost();
   }
 
-  /** Starts the host, when there is none. A start that fails is forgotten, so that the next call tries again. */
-  ready() {
+  /** Starts the host before the first call. It ends when none comes. */
+  async ready() {
+    await this.#busy(() => this.#started());
+  }
+
+  /** The host, started when there is none. A start that fails is forgotten, so that the next call tries again. */
+  #started() {
     this.#disposal.signal.throwIfAborted();
     this.#host ??= this.#start().catch((error) => {
       this.#host = undefined;
       throw error;
     });
     return this.#host;
+  }
+
+  async #endHost() {
+    const host = this.#host;
+    this.#host = undefined;
+    await host?.then((started) => started.end(), nothing);
+  }
+
+  /**
+   * Does something with the host, which ends when nothing has been done with it for long enough.
+   * @template T
+   * @param {() => Promise<T>} work
+   */
+  async #busy(work) {
+    this.#calls++;
+    clearTimeout(this.#idle);
+    try {
+      return await awake(work());
+    } finally {
+      this.#calls--;
+      if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {
+        this.#idle = setTimeout(() => this.#endHost(), this.#idleMs);
+        if (typeof this.#idle === 'object') this.#idle.unref(); // Node does not wait for it
+      }
+    }
   }
 
   /**
@@ -143,28 +191,17 @@ export class Engine {
   async #run(request, { signal: own, onProgress }) {
     const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
     const before = this.#tail;
-    const result = unlessAborted(before, signal).then(async () => {
-      const host = await unlessAborted(this.ready(), signal);
+    const result = this.#busy(async () => {
+      await unlessAborted(before, signal);
+      const host = await unlessAborted(this.#started(), signal);
       try {
-        const value = await host.run(request, { signal, onProgress });
-        return this.#signed(value);
+        return signed(await host.run(request, { signal, onProgress }), this);
       } finally {
         if (!host.usable()) this.#host = undefined;
       }
     });
     this.#tail = Promise.all([before, result.then(nothing, nothing)]);
     return result;
-  }
-
-  /**
-   * Says in the report what has computed it.
-   * @param {any} value
-   */
-  #signed(value) {
-    for (const report of [value.report, value.cloud?.report]) {
-      if (report) Object.assign(report, this.#choice, { reason: [this.reason, report.reason].filter(Boolean).join('; ') });
-    }
-    return value;
   }
 
   /** @returns {Promise<Host>} */
@@ -184,8 +221,15 @@ export class Engine {
     const { build, threads } = this;
     const { compile, loadGlue, startWorker, worker } = this.#platform;
     const module = await compile(build, this.#wasmUrl);
-    return build === 'threads' || (this.#worker ?? worker)
-      ? workerHost(startWorker, { build, threads, module })
+    const startOne = () => startWorker(this.#workerUrl);
+    if (build === 'threads') {
+      const { memory, note } = sharedMemory();
+      const host = await workerHost(startOne, { build, threads, module, memory });
+      this.#note = note;
+      return host;
+    }
+    return this.#worker ?? worker
+      ? workerHost(startOne, { build, threads, module })
       : inProcessHost(await loadGlue(build), { build, module });
   }
 }

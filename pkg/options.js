@@ -119,6 +119,8 @@ const SAMPLE = {
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
   worker: flag(),
+  workerUrl: rule("the URL of the worker's script", isUrl),
+  idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
     'the URL of the folder that holds single/ and threads/, or an object { single, threads } of file URLs',
     (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => (key === 'single' || key === 'threads') && isUrl(value[key]))),
@@ -167,6 +169,14 @@ export function checkModel(model) {
  */
 export function checkEngineOptions(options = {}) {
   return checkTable(ENGINE, options, '');
+}
+
+/**
+ * @param {unknown} options
+ * @returns {import('./types.core.js').CoreOptions}
+ */
+export function checkCoreOptions(options = {}) {
+  return checkTable({ wasmUrl: ENGINE.wasmUrl }, options, '');
 }
 
 /**

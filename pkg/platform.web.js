@@ -1,7 +1,8 @@
 /** Browsers. Nothing here runs before an engine is made, so a server may import it. */
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './glue.web.js';
+import { loadGlue } from './glue.js';
 import { compileOnce } from './modules.js';
+import { startScript } from './worker-script.js';
 
 /** @type {import('./engine.js').Platform} */
 export const platform = {
@@ -13,13 +14,13 @@ export const platform = {
       : { possible: false, reason: 'the page is not cross-origin isolated' },
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl), compileFrom),
   loadGlue,
-  startWorker() {
-    const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'pointweave' });
+  startWorker(workerUrl) {
+    const worker = startScript(workerUrl);
     return {
       post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
         worker.onmessage = ({ data }) => receive(data);
-        worker.onerror = (event) => fail(event.message ?? 'its script did not load');
+        worker.onerror = ({ message }) => fail(message ?? 'its script did not load');
         worker.onmessageerror = () => fail('a message was not understood');
       },
       hold() {}, // a page never waits for its workers

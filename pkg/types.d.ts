@@ -341,6 +341,16 @@ export interface EngineOptions {
   worker?: boolean;
   /** The folder that holds `single/` and `threads/`, or the URL of either wasm file. Default: beside the package. */
   wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL };
+  /**
+   * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
+   * another origin is started through a `blob:` URL.
+   */
+  workerUrl?: string | URL;
+  /**
+   * Milliseconds without a call after which the workers end and the memory is freed; the next call starts them anew.
+   * Default 60,000; `Infinity` keeps them until `dispose`.
+   */
+  idleMs?: number;
 }
 
 /** The functions of the package with a queue, a worker and a build of their own. */

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
-import * as glue from '../../pkg/wasm/single/pointweave.js';
+import { loadGlue } from '../../pkg/glue.js';
 import { rejection, sphere } from './support.mjs';
 
 const cloud = sphere(500);
@@ -95,7 +95,8 @@ test('undefined means not given', async () => {
 
 /** A wasm instance without the checks of the package in front. */
 async function bareWasm() {
-  await glue.default({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
+  const glue = await loadGlue('single');
+  await glue.instantiate({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
   return glue;
 }
 

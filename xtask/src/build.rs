@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::glue;
 use crate::setup;
 use crate::shell::{Result, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
@@ -40,6 +41,8 @@ impl Build {
                     // Shared memory states its limit; this is all that wasm32 can address. Whoever
                     // makes the memory may choose less.
                     "-Clink-arg=--max-memory=4294967296",
+                    // Whoever makes it has to know this, too: `pkg/memory.js`.
+                    "-Clink-arg=--initial-memory=4194304",
                 ]);
                 // What wasm-bindgen needs to give every thread its own stack and statics.
                 for symbol in [
@@ -150,10 +153,12 @@ fn bind(tools: &Path, wasm: &Path, out: &Path) -> Result<()> {
     let mut bindgen = command(tools);
     bindgen
         .args(["bindgen", "--target", "web", "--remove-producers-section"])
+        .args(["--no-typescript", "--omit-default-module-path"])
         .arg("--out-dir")
         .arg(out)
         .arg(wasm);
-    run(&mut bindgen, "wasm-bindgen failed; its error is above")
+    run(&mut bindgen, "wasm-bindgen failed; its error is above")?;
+    glue::make_factory(&out.join("pointweave.js"))
 }
 
 fn optimise(build: Build, wasm: &Path) -> Result<()> {

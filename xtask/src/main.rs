@@ -4,6 +4,7 @@
 //! A failure is one sentence that says what to do.
 
 mod build;
+mod glue;
 mod page;
 mod setup;
 mod shell;

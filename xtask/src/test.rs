@@ -75,7 +75,10 @@ pub fn test(checks: &[Check]) -> Result<()> {
             Check::Native => log.step("native", native),
             Check::Wasm => wasm(&mut log),
             Check::Types => log.step("types", types),
-            Check::Pkg => log.step("pkg", || node_tests("tests/pkg")),
+            Check::Pkg => log.step("pkg", || {
+                setup::npm(&root().join("tests/consumers"))?;
+                node_tests("tests/pkg")
+            }),
             Check::Element => log.step("element", || node_tests("tests/element")),
             Check::Page => log.step("page", || {
                 page::page().and_then(|()| node_tests("tests/page"))

@@ -1,0 +1,62 @@
+/** Synchronous calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. */
+import { awake } from './awake.js';
+import { bytesHere, cloudArgument, resultArgument } from './clouds.js';
+import { Core } from './core.js';
+import { PointweaveError } from './errors.js';
+import { runHere } from './hosts.js';
+import { checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { signed } from './reports.js';
+
+const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
+
+/**
+ * What wasm takes, of what a call was given.
+ * @type {{ [call in keyof import('./types.core.js').Core]: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
+ */
+const ARGUMENTS = {
+  reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
+  read: (data, own, transfer) => [bytesHere(data, transfer), own],
+  write: (result, own, transfer) => [resultArgument(result, transfer), own],
+  sample: (model, own) => [{ model: checkModel(model), ...own }],
+};
+
+/**
+ * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadGlue'>} platform
+ * @returns {typeof import('./types.core.js').load}
+ */
+export function makeLoad(platform) {
+  return async (options) => {
+    const { wasmUrl } = checkCoreOptions(options);
+    const core = await awake(start(platform, wasmUrl));
+    const calls = Object.entries(ARGUMENTS).map(([call, args]) => [
+      call,
+      (/** @type {any} */ subject, /** @type {any} */ options) =>
+        run(core, /** @type {keyof typeof ARGUMENTS} */ (call), (own, transfer) => args(subject, own, transfer), options),
+    ]);
+    return Object.fromEntries(calls);
+  };
+}
+
+/**
+ * @param {Parameters<typeof makeLoad>[0]} platform
+ * @param {import('./types.js').EngineOptions['wasmUrl']} wasmUrl
+ */
+async function start(platform, wasmUrl) {
+  const [module, glue] = await Promise.all([platform.compile('single', wasmUrl), platform.loadGlue('single')]);
+  return Core.start(glue, { build: 'single', module });
+}
+
+/**
+ * @param {Core} core
+ * @param {keyof typeof ARGUMENTS} call
+ * @param {(own: Record<string, any>, transfer?: boolean) => unknown[]} args
+ * @param {unknown} options
+ */
+function run(core, call, args, options) {
+  const { own, transfer, signal, onProgress } = checkOptions(call, options);
+  signal?.throwIfAborted();
+  if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
+  return signed(runHere(core, { call, args: args(own, transfer) }, { signal, onProgress }), CHOICE);
+}
