@@ -18,9 +18,20 @@ const ARGUMENTS = {
   reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
   inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
   read: (data, own, transfer) => [bytesHere(data, transfer), own],
-  write: (result, own, transfer) => [resultArgument(result, transfer), own],
+  write: (result, own, transfer) => [resultArgument(result, transfer), withoutMeshopt(own)],
   sample: (model, own) => [{ model: checkModel(model), ...own }],
 };
+
+/** Compression waits for packages to load, and no call here waits. @param {Record<string, any>} own */
+function withoutMeshopt({ meshopt, ...plain }) {
+  if (!meshopt) return plain;
+  throw new PointweaveError({
+    code: 'bad-option',
+    message: "meshopt is not done here: give what write makes to compress of 'pointweave/meshopt'",
+    expected: 'false',
+    found: meshopt,
+  });
+}
 
 /**
  * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadGlue'>} platform

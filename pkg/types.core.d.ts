@@ -20,7 +20,8 @@ export interface Core {
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): SurfaceMesh<P>;
   inspect(cloud: PointCloud, options?: CallOptions): CloudInfo;
   read(data: ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): PointCloud;
-  write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: WriteOptions & CallOptions): Uint8Array;
+  /** Without `meshopt`: `compress` of `pointweave/meshopt` takes the bytes of a GLB file. */
+  write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: Omit<WriteOptions, 'meshopt'> & CallOptions): Uint8Array;
   sample(model: Model, options?: SampleOptions & CallOptions): PointCloud<Float32Array>;
 }
 

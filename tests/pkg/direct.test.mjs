@@ -49,6 +49,7 @@ test('errors are thrown, with all they say', async () => {
   assert.equal(thrown(() => core.reduce({ positions: new Float32Array(0) })).code, 'empty-cloud');
   assert.equal(thrown(() => core.reduce(sphere(), { raito: 1 })).code, 'bad-option');
   assert.equal(thrown(() => core.read(new Blob([]))).code, 'bad-input');
+  assert.match(thrown(() => core.write(sphere(), { format: 'glb', meshopt: true })).message, /compress of 'pointweave\/meshopt'/);
   assert.match((await load({ wasmUrl: 'file:///nowhere/' }).catch(String)), /nowhere\/single/);
   assert.match((await load({ threads: 2 }).catch(String)), /there is no option threads/);
   assert.equal(core.reduce(sphere()).nearest.length, 667);
