@@ -193,7 +193,14 @@ function checkTable(table, options, path) {
     if (!Object.hasOwn(table, key)) throw unknownOption(path + key, key, Object.keys(table));
     if (!table[key].accepts(value, path + key)) throw badOption(path + key, table[key].expected, value);
   }
-  return Object.fromEntries(given);
+  return Object.fromEntries(given.map(([key, value]) => [key, withoutUndefined(value)]));
+}
+
+/** An object of options in options, without those that are not given; whatever else as it is. @param {unknown} value @returns {unknown} */
+function withoutUndefined(value) {
+  if (Object.prototype.toString.call(value) !== '[object Object]') return value;
+  const given = Object.entries(/** @type {object} */ (value)).filter(([, inner]) => inner !== undefined);
+  return Object.fromEntries(given.map(([key, inner]) => [key, withoutUndefined(inner)]));
 }
 
 /** @param {Record<string, unknown>} options of `write` */
