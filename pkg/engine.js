@@ -2,14 +2,16 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
  * that does them.
  */
-import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { readFile, readerError, readerOf } from './reading.js';
+import { slicesOf } from './slices.js';
 
 /** @import { Build, EngineOptions } from './types.js' */
 /** @import { Host, Watch, WorkerLike } from './hosts.js' */
-/** @import { Glue, Request } from './core.js' */
+/** @import { Glue, Request, WasmBuild } from './core.js' */
 
 /**
  * What differs between a browser and Node.
@@ -17,8 +19,8 @@ import { checkEngineOptions, checkModel, checkOptions } from './options.js';
  * @property {boolean} worker whether the single-threaded build gets a worker unless it is told
  * @property {() => number} cores
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
- * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
- * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
+ * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
  * @property {() => WorkerLike} startWorker
  */
 
@@ -84,8 +86,12 @@ export class Engine {
   /** @param {any} data @param {any} [options] */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
-    const bytes = await bytesArgument(data, transfer);
-    return this.#run({ call: 'read', args: [bytes, { name: data.name, ...own }] }, watch);
+    const file = slicesOf(data, transfer);
+    const given = { name: data.name, ...own };
+    return this.#queued(watch, async (signal) => {
+      const reader = await readerOf(file, own.format);
+      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+    });
   }
 
   /** @param {any} result @param {any} [options] */
@@ -136,20 +142,55 @@ export class Engine {
    * @param {Request} request
    * @param {Watch} watch
    */
-  async #run(request, { signal: own, onProgress }) {
-    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
-    const before = this.#tail;
-    const result = unlessAborted(before, signal).then(async () => {
+  async #run(request, watch) {
+    return this.#queued(watch, async (signal) => {
       const host = await unlessAborted(this.ready(), signal);
       try {
-        const value = await host.run(request, { signal, onProgress });
+        const value = await host.run(request, { signal, onProgress: watch.onProgress });
         return this.#signed(value);
       } finally {
         if (!host.usable()) this.#host = undefined;
       }
     });
+  }
+
+  /**
+   * Waits for the calls before, then does a job; those after wait for it.
+   * @template T
+   * @param {Watch} watch
+   * @param {(signal: AbortSignal) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #queued({ signal: own }, job) {
+    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
+    const before = this.#tail;
+    const result = unlessAborted(before, signal).then(() => unlessAborted(job(signal), signal));
     this.#tail = Promise.all([before, result.then(nothing, nothing)]);
     return result;
+  }
+
+  /**
+   * Does something with a reader's wasm, which is loaded for it and ends after it, with its memory.
+   * @template T
+   * @param {import('./reading.js').Reader} reader
+   * @param {AbortSignal} signal
+   * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #withReader(reader, signal, job) {
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await unlessAborted(compile(reader, this.#wasmUrl), signal);
+    const inWorker = this.build === 'threads' || (this.#worker ?? worker);
+    const host = await (inWorker
+      ? workerHost(startWorker, { build: reader, threads: 1, module })
+      : inProcessHost(await loadGlue(reader), { build: reader, module }));
+    try {
+      return await job((request) => host.run(request, { signal }));
+    } catch (error) {
+      throw readerError(error, reader);
+    } finally {
+      host.end();
+    }
   }
 
   /**

@@ -4,7 +4,7 @@ let copies = 0;
 
 /**
  * A module holds one wasm instance, so every instance needs a module of its own; the query makes it so.
- * @param {import('./types.js').Build} build
+ * @param {import('./core.js').WasmBuild} build
  * @returns {Promise<import('./core.js').Glue>}
  */
 export function loadGlue(build) {

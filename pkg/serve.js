@@ -14,7 +14,7 @@ import { toRecord } from './errors.js';
 /**
  * @param {{ listen: (receive: (message: ToWorker) => void) => void,
  *   post: (message: FromWorker, transfer?: ArrayBuffer[]) => void }} port
- * @param {(build: import('./types.js').Build) => Promise<import('./core.js').Glue>} loadGlue
+ * @param {(build: import('./core.js').WasmBuild) => Promise<import('./core.js').Glue>} loadGlue
  */
 export function serve(port, loadGlue) {
   /** @type {Core} */

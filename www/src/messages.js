@@ -5,7 +5,7 @@ import { byId } from './dom.js';
  * @typedef {{ title: string, text: string, advice: string }} Words
  */
 
-const READABLE = 'Pointweave reads PLY (text or binary) and XYZ text files: x y z on each line.';
+const READABLE = 'Pointweave reads PLY, LAS, LAZ, E57, PCD, OBJ, OFF, STL, GLB, and text with x y z on each line.';
 
 /** For each of the package's codes. The engine's own sentence, with byte or line, is shown below it. */
 const WORDS = /** @type {Record<string, Words>} */ ({

@@ -1,5 +1,6 @@
 /** The engine's stages, in the words of the page. */
 const WORDS = /** @type {Record<string, string>} */ ({
+  read: 'Reading the file',
   octree: 'Sorting the points',
   features: 'Measuring curvature and noise',
   cluster: 'Choosing the points to keep',
