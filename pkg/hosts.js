@@ -92,7 +92,7 @@ export async function workerHost(startWorker, { build, threads, module }) {
 
   const start = async () => {
     const memory = await main.ask({ start: { build, module } });
-    if (build === 'single') return;
+    if (build !== 'threads') return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
     await Promise.all(pool.map((worker) => worker.ask({ start: { build, module, memory } })));

@@ -76,8 +76,27 @@ fn columns(scans: &[PointCloud]) -> Columns {
         },
         normal: any(|scan| normals(scan).is_some()).then_some([7, 8, 9]),
         colors: ColorRange::Unit,
-        precision: Precision::AsNeeded,
+        precision: if scans.iter().all(is_single) {
+            Precision::Single
+        } else {
+            Precision::Double
+        },
     }
+}
+
+/// Whether single precision holds the coordinates: they have no more, and stay where they are.
+fn is_single(scan: &PointCloud) -> bool {
+    let axes = [
+        RecordName::CartesianX,
+        RecordName::CartesianY,
+        RecordName::CartesianZ,
+    ];
+    let mut records = scan
+        .prototype
+        .iter()
+        .filter(|record| axes.contains(&record.name));
+    let single = |record: &::e57::Record| matches!(record.data_type, RecordDataType::Single { .. });
+    scan.has_cartesian() && scan.transform.is_none() && records.all(single)
 }
 
 /// Points of all scans, as far as a file of this size can hold them.
@@ -110,7 +129,8 @@ fn read_scan(
     let at = scan.file_offset;
     let bytes = input.rest();
     let most = 8 * bytes.len() as u64 / bits(scan).max(1);
-    if scan.records > most {
+    // Points of no bits, all the same, take no bytes: the crate would make them without end.
+    if scan.records > most || (scan.records > 0 && bits(scan) == 0) {
         let expected = format!(
             "a scan of {} points of {} bits each",
             scan.records,
@@ -136,7 +156,10 @@ fn read_scan(
             None => None,
         };
         for point in points {
-            let point = point?;
+            let point = match point {
+                Err(error) if is_packet_without_points(&error) => continue,
+                other => other?,
+            };
             let mut row = [f64::NAN; 10];
             if let CartesianCoordinate::Valid { x, y, z } = point.cartesian {
                 row[..3].copy_from_slice(&[x, y, z]);
@@ -161,6 +184,12 @@ fn read_scan(
         }
         Ok(())
     })
+}
+
+/// A packet may have no whole point, and an index has none: the crate (0.11.13) then gives this error where it should go on, as
+/// it does when it is asked again.
+fn is_packet_without_points(error: &::e57::Error) -> bool {
+    matches!(error, ::e57::Error::Internal { desc, .. } if desc == "Cannot read next point because of logic error")
 }
 
 /// The rotation of a pose.

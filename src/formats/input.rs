@@ -148,7 +148,7 @@ impl<'a> Input<'a> {
     /// The file ends where `length` bytes should follow.
     pub(super) fn no_bytes(&self, length: u64, of: &str) -> Error {
         let expected = format!("{length} more bytes of {of}");
-        let found = format!("{} bytes, then the end of the file", self.bytes.len());
+        let found = format!("{} bytes, then the end of the file", self.left());
         self.bad("byte", self.place.byte, &expected, found)
     }
 

@@ -30,12 +30,17 @@ test('a reader is loaded when a file of its format comes', async (t) => {
     const [, module] = /wasm\/(\w+)\/\w+\.wasm$/.exec(request.url()) ?? [];
     if (module) loaded.push(module);
   });
+  let workers = 0;
+  page.on('worker', () => workers++);
   for (const options of [{ threads: 1 }, { threads: 1, worker: false }, { threads: 2 }]) {
     for (const [name, points, module] of FILES) {
       loaded.length = 0;
+      workers = 0;
       const read = await page.evaluate(readIn, [options, name, bytesOf(name)]);
       assert.equal(read.points, points, `${name} ${JSON.stringify(options)}`);
       assert.equal(read.shares.at(-1), 1);
+      // The engine's own, with its pool, and one for the reader.
+      assert.equal(workers, options.worker === false ? 0 : options.threads === 2 ? 4 : 2);
       const others = loaded.filter((other) => ['files', 'las', 'e57'].includes(other) && other !== module);
       assert.deepEqual(others, [], `${name} needs ${module} alone`);
       assert.ok(options.threads === 2 || options.worker === false || loaded.includes(module), `${name}: ${loaded}`);
