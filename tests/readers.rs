@@ -2,6 +2,8 @@
 //! `files.rs`, damage of every kind in `fuzz`.
 #![cfg(not(target_arch = "wasm32"))]
 
+#[path = "fuzz/check.rs"]
+mod check;
 #[path = "common/made.rs"]
 mod made;
 
@@ -298,16 +300,16 @@ fn stl_has_each_place_once() {
 
     assert_eq!(
         failure(&binary[..binary.len() - 1], Format::Stl),
-        ("bad-file", Some(134))
+        ("bad-file", Some(84))
     );
     let mut unnamed = binary.clone();
     unnamed[..5].copy_from_slice(b"alone");
     assert_eq!(
         failure(&unnamed[..binary.len() - 1], Format::Stl),
-        ("bad-file", Some(134))
+        ("bad-file", Some(84))
     );
     unnamed[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert_eq!(failure(&unnamed, Format::Stl), ("bad-file", Some(184)));
+    assert_eq!(failure(&unnamed, Format::Stl), ("bad-file", Some(84)));
     assert_eq!(failure(b"short", Format::Stl), ("bad-file", Some(0)));
     for (from, to, line) in [
         ("0 0e0 0\n", "0 0e0\n", 4),
@@ -378,10 +380,14 @@ fn glb_places_its_meshes() {
     let change =
         |from: &str, to: &str| failure(&made::glb(&json.replacen(from, to, 1), &data), Format::Glb);
     for (from, to) in [
-        ("\"count\": 2", "\"count\": 9999999999"),
-        ("\"count\": 2", "\"count\": 18446744073709551615"),
+        ("\"count\": 2", "\"count\": 9999999"),
         ("\"byteLength\": 48", "\"byteLength\": 480"),
         ("\"byteLength\": 48", "\"byteLength\": 18446744073709551615"),
+        // Found by fuzzing: fewer normals than positions.
+        (
+            "\"byteOffset\": 24, \"componentType\": 5126, \"count\": 2",
+            "\"byteOffset\": 24, \"componentType\": 5126, \"count\": 1",
+        ),
         ("\"bufferView\": 0", "\"bufferView\": 7"),
         ("\"byteOffset\": 24", "\"byteOffset\": 49"),
         ("\"componentType\": 5126", "\"componentType\": 5124"),
@@ -393,6 +399,25 @@ fn glb_places_its_meshes() {
     ] {
         assert_eq!(change(from, to).0, "bad-file", "{to}");
     }
+    let all = "\"count\": 18446744073709551615";
+    assert_eq!(change("\"count\": 2", all).0, "unsupported-file");
+    let many = format!(
+        "\"children\": [{}]",
+        (1..=200)
+            .map(|i| i.to_string())
+            .collect::<Vec<_>>()
+            .join(",")
+    );
+    let nodes = ",{\"mesh\": 0}".repeat(200);
+    let crowd = json
+        .replace("\"children\": [1]", &many)
+        .replace("{\"mesh\": 0}]", &format!("{{\"mesh\": 0}}{nodes}]"));
+    let crowd = crowd.replacen("\"count\": 2", "\"count\": 1000000", 1);
+    assert_eq!(
+        failure(&made::glb(&crowd, &data), Format::Glb).0,
+        "unsupported-file",
+        "200 million points of 56 bytes"
+    );
     let draco = "{ \"extensionsRequired\": [\"KHR_draco_mesh_compression\"],";
     assert_eq!(change("{", draco).0, "unsupported-file");
     assert_eq!(
@@ -685,10 +710,7 @@ fn damaged_files_never_panic() {
                     _ => damaged.insert(at, b"0 9\n-ex."[(rng.next_u64() % 8) as usize]),
                 }
             }
-            if let Ok(cloud) = read(&damaged, format) {
-                let numbers = values(&cloud);
-                assert!(numbers.iter().all(|x| x.is_finite()) && numbers.len().is_multiple_of(3));
-            }
+            check::check(&damaged, &[format]);
         }
     }
 }
@@ -704,4 +726,24 @@ fn what_is_missing_is_counted_to_the_end_of_the_file_in_slices_too() {
         .chunks(header.len() + 8)
         .find_map(|slice| reading.push(slice).err());
     assert_eq!(sliced, Some(whole));
+}
+
+/// Found by fuzzing: damaged times switched from sequence to sequence until the crate's decoder had no stack left.
+#[test]
+fn damaged_times_do_not_overflow_the_stack() {
+    // A chunk of format 1 whose times' first codes are what a stream of ones decodes to: the last, which switches.
+    for format in [1, 3, 6, 7] {
+        let version = if format < 6 { (1, 3) } else { (1, 4) };
+        let whole = made::las(format, 4000, version, true);
+        let mut rng = Rng::new(9);
+        let start = whole.len() / 3;
+        for fill in [0x00, 0xff, 0x55] {
+            for _ in 0..20 {
+                let mut damaged = whole.clone();
+                let at = start + (rng.next_u64() % (whole.len() / 2) as u64) as usize;
+                damaged[at..].fill(fill);
+                check::check(&damaged, &[Format::Las]);
+            }
+        }
+    }
 }

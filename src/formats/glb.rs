@@ -15,6 +15,9 @@ use crate::error::Result;
 use accessor::Accessor;
 use scene::{Document, Placed};
 
+/// Meshes that many nodes place make many points of few bytes: no more than these are believed.
+const MOST_POINTS: usize = 1 << 27;
+
 /// Reads the vertices.
 #[derive(Default)]
 pub(super) struct Glb {
@@ -28,6 +31,16 @@ impl Parser for Glb {
         }
         let (document, buffer) = chunks(input)?;
         let parts = scene::parts(&document, input)?;
+        let placed = parts
+            .iter()
+            .filter_map(|part| part.primitive.attributes.get("POSITION"));
+        let counts = placed
+            .filter_map(|&index| document.accessors.get(index).map(|accessor| accessor.count));
+        let points = counts.fold(0usize, usize::saturating_add);
+        if points > MOST_POINTS {
+            let found = format!("{points} once its nodes have placed them");
+            return Err(input.unsupported(&format!("at most {MOST_POINTS} vertices"), found));
+        }
         let has = |name: &str| {
             !parts.is_empty()
                 && parts
@@ -72,6 +85,15 @@ impl Glb {
             return Ok(());
         };
         let [normals, colors] = [open("NORMAL")?, open("COLOR_0")?];
+        for other in [&normals, &colors].into_iter().flatten() {
+            if other.count != positions.count {
+                let expected = format!(
+                    "{} normals and colours, as there are positions",
+                    positions.count
+                );
+                return Err(input.bad_byte(20, &expected, other.count.to_string()));
+            }
+        }
         if part.primitive.mode.unwrap_or(4) == 4 {
             let corners = match part.primitive.indices {
                 Some(index) => Accessor::open(document, index, buffer, input)?.count,

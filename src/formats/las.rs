@@ -7,6 +7,7 @@
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
 mod laz;
+mod time;
 
 use super::input::Input;
 use super::reading::{Parser, Step};

@@ -102,12 +102,15 @@ fn kind(input: &mut Input) -> Result<Kind> {
 
 impl Stl {
     fn binary(&mut self, count: u32, input: &mut Input, table: &mut Table) -> Result<Step> {
-        let (count, size) = (u64::from(count), TRIANGLE as u64);
+        let count = u64::from(count);
+        let missing = (count - self.triangles) * TRIANGLE as u64;
+        if missing > input.left() {
+            return Err(input.no_bytes(missing, &format!("{count} triangles")));
+        }
         while self.triangles < count {
             let Some(triangle) = input.take(TRIANGLE) else {
-                let missing = (count - self.triangles) * size;
-                // A file whose first bytes are no header says a count of no sense: it is not waited for.
-                return if input.last || missing > input.left() {
+                let missing = (count - self.triangles) * TRIANGLE as u64;
+                return if input.last {
                     Err(input.no_bytes(missing, &format!("{count} triangles")))
                 } else {
                     Ok(Step::More)

@@ -2,7 +2,7 @@
 
 import {
   DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
-  type CloudInfo, type Engine, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
+  type CloudInfo, type Engine, type FileCloud, type Format, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
 } from 'pointweave';
 import type * as browser from '../../pkg/index.js';
 import type * as node from '../../pkg/index.node.js';
@@ -25,6 +25,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
+  const scan: FileCloud = await read(file, { format: 'las', signal, onProgress: ({ stage }) => console.log(stage) });
+  const format: Format = scan.file.format;
   const bytes: Uint8Array = await write(mesh, { format: 'ply', encoding: 'ascii' });
   const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/') });
   const duck: PointCloud<Float32Array> = await engine.sample('duck', { count: 1000, seed: 1 });
@@ -35,6 +37,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   await reduce(cloud, { target: '0.3' });
   // @ts-expect-error no such option
   await reduce(cloud, { ratio: 0.3 });
+  // @ts-expect-error no such format
+  await read(file, { format: 'dae' });
   // @ts-expect-error no such way to carry an attribute
   await reduce(cloud, { attributes: { label: 'median' } });
   // @ts-expect-error a plain array holds no positions
@@ -46,5 +50,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
+  return [info.bounds.min[0], bytes.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers, format];
 }

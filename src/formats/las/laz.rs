@@ -5,12 +5,14 @@
 
 use super::super::input::Input;
 use super::Header;
+use super::time::Times;
 use crate::error::{Error, Result};
+use laz::las::{v1, v2};
 use laz::laszip::ChunkTable;
 use laz::record::{
     LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
 };
-use laz::{LazItemRecordBuilder, LazItemType, LazVlr};
+use laz::{DecompressionSelection, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -68,21 +70,18 @@ impl Laz {
         let extra = header.record as u16 - header.format.len();
         let described = LazItemRecordBuilder::default_for_point_format_id(header.number, extra)
             .map_err(|error| wrong(error.to_string()))?;
-        let kinds = |items: &[laz::LazItem]| {
+        let kinds = |items: &[LazItem]| {
             items
                 .iter()
-                .map(laz::LazItem::item_type)
+                .map(LazItem::item_type)
                 .collect::<Vec<LazItemType>>()
         };
-        let whole = |item: &laz::LazItem| versions.contains(&item.version());
+        let whole = |item: &LazItem| versions.contains(&item.version());
         if kinds(vlr.items()) != kinds(&described) || !vlr.items().iter().all(whole) {
             let found = format!(
                 "{:?} of versions {:?}",
                 kinds(vlr.items()),
-                vlr.items()
-                    .iter()
-                    .map(laz::LazItem::version)
-                    .collect::<Vec<_>>()
+                vlr.items().iter().map(LazItem::version).collect::<Vec<_>>()
             );
             return Err(wrong(found));
         }
@@ -178,7 +177,6 @@ impl Laz {
         let mut record = vec![0; self.record];
         let source = Cursor::new(chunk);
         let mut all = |records: &mut dyn RecordDecompressor<Cursor<&[u8]>>| {
-            records.set_fields_from(self.vlr.items())?;
             for _ in 0..points {
                 records.decompress_next(&mut record)?;
                 push(&record);
@@ -187,14 +185,66 @@ impl Laz {
         };
         if self.layout == Layout::Layered {
             let mut records = LayeredPointRecordDecompressor::new(source);
+            records.set_fields_from(self.vlr.items())?;
+            // Of the layers those that are used. Not times above all, at which damaged data overflow the stack: see `Times`.
+            records.set_selection(
+                DecompressionSelection::xy_returns_channel()
+                    .decompress_z()
+                    .decompress_classification()
+                    .decompress_intensity()
+                    .decompress_rgb()
+                    .decompress_nir(),
+            );
             all(&mut records)?;
             Ok(records.get().position() as usize)
         } else {
             let mut records = SequentialPointRecordDecompressor::new(source);
+            for item in self.vlr.items() {
+                add_field(&mut records, item)?;
+            }
             all(&mut records)?;
             Ok(records.get().position() as usize)
         }
     }
+}
+
+/// As the crate does it, but for the times of version 2.
+fn add_field<'a>(
+    records: &mut SequentialPointRecordDecompressor<'a, Cursor<&'a [u8]>>,
+    item: &LazItem,
+) -> std::result::Result<(), laz::LasZipError> {
+    let size = usize::from(item.size());
+    match (item.item_type(), item.version()) {
+        (LazItemType::Point10, 1) => {
+            records.add_field_decompressor(v1::LasPoint0Decompressor::default())
+        }
+        (LazItemType::Point10, _) => {
+            records.add_field_decompressor(v2::LasPoint0Decompressor::default())
+        }
+        (LazItemType::GpsTime, 1) => {
+            records.add_field_decompressor(v1::LasGpsTimeDecompressor::default())
+        }
+        (LazItemType::GpsTime, _) => records.add_field_decompressor(Times::default()),
+        (LazItemType::RGB12, 1) => {
+            records.add_field_decompressor(v1::LasRGBDecompressor::default())
+        }
+        (LazItemType::RGB12, _) => {
+            records.add_field_decompressor(v2::LasRGBDecompressor::default())
+        }
+        (LazItemType::Byte(_), 1) => {
+            records.add_field_decompressor(v1::LasExtraByteDecompressor::new(size))
+        }
+        (LazItemType::Byte(_), _) => {
+            records.add_field_decompressor(v2::LasExtraByteDecompressor::new(size))
+        }
+        (LazItemType::WavePacket13, _) => {
+            records.add_field_decompressor(v1::LasWavepacketDecompressor::default())
+        }
+        (other, version) => {
+            return Err(laz::LasZipError::UnsupportedLazItemVersion(other, version));
+        }
+    }
+    Ok(())
 }
 
 /// The content of LASzip's variable length record, and where it is.

@@ -5,4 +5,6 @@ mod check;
 
 use pointweave::formats::Format;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| check::check(bytes, &[Format::Glb]));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    check::check(bytes, &[Format::Glb]);
+});

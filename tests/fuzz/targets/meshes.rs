@@ -5,7 +5,6 @@ mod check;
 
 use pointweave::formats::Format;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| check::check(
-    bytes,
-    &[Format::Obj, Format::Off, Format::Stl]
-));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    check::check(bytes, &[Format::Obj, Format::Off, Format::Stl]);
+});
