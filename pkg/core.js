@@ -10,7 +10,7 @@ import { track } from './progress.js';
 /**
  * A function of `src/wasm.rs` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
@@ -22,9 +22,11 @@ import { track } from './progress.js';
  * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
  */
 
+/** The engine's builds, and those that hold readers of files alone. @typedef {Build | 'files' | 'las' | 'e57'} WasmBuild */
+
 /**
  * @typedef {object} CoreOptions
- * @property {Build} build
+ * @property {WasmBuild} build
  * @property {WebAssembly.Module} module the compiled wasm of that build
  * @property {WebAssembly.Memory} [memory] of the threads build, shared by all instances of a pool
  */

@@ -3,17 +3,19 @@
  * that does them.
  */
 import { awake } from './awake.js';
-import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { compressorFor } from './compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { readFile, readerError, readerOf } from './reading.js';
 import { signed } from './reports.js';
+import { slicesOf } from './slices.js';
 
 /** @import { Build, EngineOptions } from './types.js' */
 /** @import { Host, Watch, WorkerLike } from './hosts.js' */
-/** @import { Glue, Request } from './core.js' */
+/** @import { Glue, Request, WasmBuild } from './core.js' */
 
 /**
  * What differs between a browser and Node.
@@ -21,8 +23,8 @@ import { signed } from './reports.js';
  * @property {boolean} worker whether the single-threaded build gets a worker unless it is told
  * @property {() => number} cores
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
- * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
- * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
+ * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
  * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
@@ -104,8 +106,12 @@ export class Engine {
   /** @param {any} data @param {any} [options] */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
-    const bytes = await bytesArgument(data, transfer);
-    return this.#run({ call: 'read', args: [bytes, { name: data.name, ...own }] }, watch);
+    const file = slicesOf(data, transfer);
+    const given = { name: data.name, ...own };
+    return this.#queued(watch, async (signal) => {
+      const reader = await readerOf(file, own.format);
+      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+    });
   }
 
   /** @param {any} result @param {any} [options] */
@@ -188,20 +194,57 @@ export class Engine {
    * @param {Request} request
    * @param {Watch} watch
    */
-  async #run(request, { signal: own, onProgress }) {
-    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
-    const before = this.#tail;
-    const result = this.#busy(async () => {
-      await unlessAborted(before, signal);
+  async #run(request, watch) {
+    return this.#queued(watch, async (signal) => {
       const host = await unlessAborted(this.#started(), signal);
       try {
-        return signed(await host.run(request, { signal, onProgress }), this);
+        return signed(await host.run(request, { signal, onProgress: watch.onProgress }), this);
       } finally {
         if (!host.usable()) this.#host = undefined;
       }
     });
+  }
+
+  /**
+   * Waits for the calls before, then does a job; those after wait for it.
+   * @template T
+   * @param {Watch} watch
+   * @param {(signal: AbortSignal) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #queued({ signal: own }, job) {
+    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
+    const before = this.#tail;
+    const result = this.#busy(async () => {
+      await unlessAborted(before, signal);
+      return unlessAborted(job(signal), signal);
+    });
     this.#tail = Promise.all([before, result.then(nothing, nothing)]);
     return result;
+  }
+
+  /**
+   * Does something with a reader's wasm, which is loaded for it and ends after it, with its memory.
+   * @template T
+   * @param {import('./reading.js').Reader} reader
+   * @param {AbortSignal} signal
+   * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #withReader(reader, signal, job) {
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await unlessAborted(compile(reader, this.#wasmUrl), signal);
+    const inWorker = this.build === 'threads' || (this.#worker ?? worker);
+    const host = await (inWorker
+      ? workerHost(() => startWorker(this.#workerUrl), { build: reader, threads: 1, module })
+      : inProcessHost(await loadGlue(reader), { build: reader, module }));
+    try {
+      return await job((request) => host.run(request, { signal }));
+    } catch (error) {
+      throw readerError(error, reader);
+    } finally {
+      host.end();
+    }
   }
 
   /** @returns {Promise<Host>} */

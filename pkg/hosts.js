@@ -105,7 +105,7 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
 
   const start = async () => {
     await main.ask({ start: { build, module, memory } });
-    if (build === 'single' || !alive) return;
+    if (build !== 'threads' || !alive) return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
     await Promise.all(pool.map((worker) => worker.ask({ start: { build, module, memory } })));

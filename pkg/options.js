@@ -99,7 +99,7 @@ const RECONSTRUCT = {
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
-  format: rule("'ply' or 'xyz'", (value) => value === 'ply' || value === 'xyz'),
+  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57'), fallback: undefined },
 };
 
 const WRITE = {
@@ -122,8 +122,8 @@ export const ENGINE = {
   workerUrl: rule("the URL of the worker's script", isUrl),
   idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
-    'the URL of the folder that holds single/ and threads/, or an object { single, threads } of file URLs',
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => (key === 'single' || key === 'threads') && isUrl(value[key]))),
+    'the URL of the folder that holds single/, threads/, files/, las/ and e57/, or an object { single, threads, files, las, e57 } of file URLs',
+    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => ['single', 'threads', 'files', 'las', 'e57'].includes(key) && isUrl(value[key]))),
   ),
 };
 

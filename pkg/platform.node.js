@@ -32,7 +32,7 @@ export const platform = {
 };
 
 /**
- * @param {import('./types.js').Build} build
+ * @param {import('./core.js').WasmBuild} build
  * @param {import('./types.js').EngineOptions['wasmUrl']} given
  * @returns {URL}
  */

@@ -31,13 +31,17 @@ export const platform = {
 
 /**
  * The URLs are spelled out for bundlers to see them.
- * @param {import('./types.js').Build} build
+ * @param {import('./core.js').WasmBuild} build
  * @param {import('./types.js').EngineOptions['wasmUrl']} given
  */
 function wasmFile(build, given) {
-  const file = build === 'threads'
-    ? new URL('./wasm/threads/pointweave_bg.wasm', import.meta.url)
-    : new URL('./wasm/single/pointweave_bg.wasm', import.meta.url);
+  const file = {
+    single: () => new URL('./wasm/single/pointweave_bg.wasm', import.meta.url),
+    threads: () => new URL('./wasm/threads/pointweave_bg.wasm', import.meta.url),
+    files: () => new URL('./wasm/files/pointweave_bg.wasm', import.meta.url),
+    las: () => new URL('./wasm/las/pointweave_bg.wasm', import.meta.url),
+    e57: () => new URL('./wasm/e57/pointweave_bg.wasm', import.meta.url),
+  }[build]();
   if (!given) return file.href;
   if (typeof given === 'string' || given instanceof URL) return new URL(`${given}`.replace(/\/?$/, `/${build}/pointweave_bg.wasm`), location.href).href;
   return given[build] ? new URL(given[build], location.href).href : file.href;

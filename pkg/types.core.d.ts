@@ -3,7 +3,7 @@
  * thread that makes them. For whoever has a worker of their own.
  */
 import type {
-  CallOptions, CloudInfo, EngineOptions, PointCloud, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
+  CallOptions, CloudInfo, EngineOptions, FileCloud, PointCloud, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
   SampleOptions, SurfaceMesh, WriteOptions, Model,
 } from './types.js';
 
@@ -19,7 +19,8 @@ export interface Core {
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): ReducedCloud<P>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): SurfaceMesh<P>;
   inspect(cloud: PointCloud, options?: CallOptions): CloudInfo;
-  read(data: ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): PointCloud;
+  /** The one call that waits: readers are wasm of their own, which is loaded when a file of theirs comes. */
+  read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<FileCloud>;
   /** Without `meshopt`: `compress` of `pointweave/meshopt` takes the bytes of a GLB file. */
   write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: Omit<WriteOptions, 'meshopt'> & CallOptions): Uint8Array;
   sample(model: Model, options?: SampleOptions & CallOptions): PointCloud<Float32Array>;

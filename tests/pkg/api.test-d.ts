@@ -2,7 +2,8 @@
 
 import {
   DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
-  type CloudInfo, type Engine, type OutputFormat, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
+  type CloudInfo, type Engine, type FileCloud, type Format, type OutputFormat, type PointCloud, type ReducedCloud, type Stage,
+  type SurfaceMesh,
 } from 'pointweave';
 import { compress } from 'pointweave/meshopt';
 import type * as browser from '../../pkg/index.js';
@@ -35,6 +36,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
+  const scan: FileCloud = await read(file, { format: 'las', signal, onProgress: ({ stage }) => console.log(stage) });
+  const format: Format = scan.file.format;
   const bytes: Uint8Array = await write(mesh, { format: 'ply', encoding: 'ascii' });
   const glb: Uint8Array = await write(reduced, { format: 'glb' satisfies OutputFormat, quantize: true, meshopt: compress });
   const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/'), workerUrl: '/worker.js', idleMs: Infinity });
@@ -52,6 +55,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   await reduce(cloud, { target: '0.3' });
   // @ts-expect-error no such option
   await reduce(cloud, { ratio: 0.3 });
+  // @ts-expect-error no such format
+  await read(file, { format: 'dae' });
   // @ts-expect-error no such way to carry an attribute
   await reduce(cloud, { attributes: { label: 'median' } });
   // @ts-expect-error a plain array holds no positions
@@ -63,5 +68,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [now, info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
+  return [now, info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers, format];
 }

@@ -6,7 +6,7 @@ import * as api from 'pointweave';
 import { DEFAULTS, PointweaveError, load } from 'pointweave/core';
 import { makeLoad } from '../../pkg/direct-api.js';
 import { platform } from '../../pkg/platform.node.js';
-import { engineFor, sphere } from './support.mjs';
+import { engineFor, rejection, sphere } from './support.mjs';
 
 /** What a function throws. */
 function thrown(f) {
@@ -29,7 +29,7 @@ test('direct calls give what an engine gives', async (t) => {
   assert.deepEqual([report.build, report.threads, report.reason], ['single', 1, 'called directly']);
   assert.equal(core.reduce(scan, { target: { count: 77 } }).nearest.length, 77);
   assert.equal(core.inspect(scan).count, 4000);
-  const back = core.read(core.write(scan, { format: 'ply' }), { name: 'scan.ply' });
+  const back = await core.read(core.write(scan, { format: 'ply' }), { name: 'scan.ply' });
   assert.deepEqual(back.positions, scan.positions);
   assert.equal(DEFAULTS, api.DEFAULTS);
   assert.equal(PointweaveError, api.PointweaveError);
@@ -48,7 +48,8 @@ test('errors are thrown, with all they say', async () => {
   const core = await load();
   assert.equal(thrown(() => core.reduce({ positions: new Float32Array(0) })).code, 'empty-cloud');
   assert.equal(thrown(() => core.reduce(sphere(), { raito: 1 })).code, 'bad-option');
-  assert.equal(thrown(() => core.read(new Blob([]))).code, 'bad-input');
+  assert.equal((await rejection(core.read(5))).code, 'bad-input');
+  assert.equal((await rejection(core.read(new Blob(['0 0 0\n1 x 2\n'])))).index, 2);
   assert.match(thrown(() => core.write(sphere(), { format: 'glb', meshopt: true })).message, /compress of 'pointweave\/meshopt'/);
   assert.match((await load({ wasmUrl: 'file:///nowhere/' }).catch(String)), /nowhere\/single/);
   assert.match((await load({ threads: 2 }).catch(String)), /there is no option threads/);
