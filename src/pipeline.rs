@@ -226,12 +226,15 @@ fn reconstruct_input(
     surface(input, fitted, params, clock)
 }
 
+/// The reduced cloud, and where its points are for the fit.
+type ToFit = (Reduced, Vec<Vec3>);
+
 /// What is remembered of a cloud from one call to the next.
 #[derive(Debug, Default)]
 pub struct Memory {
     input: Option<Input<'static>>,
     /// How it was reduced, and what came out.
-    fitted: Option<(Option<ReduceParams>, (Reduced, Vec<Vec3>))>,
+    fitted: Option<(Option<ReduceParams>, ToFit)>,
 }
 
 /// [`reconstruct_owned`] that does not do again what the call before has done for the same cloud, to the same bytes: the
@@ -295,7 +298,7 @@ struct Measured {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions): (Reduced, Vec<Vec3>),
+    (mut reduced, positions): ToFit,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -628,7 +631,7 @@ fn points_to_fit(
     mut features: Features,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
-) -> Result<(Reduced, Vec<Vec3>)> {
+) -> Result<ToFit> {
     let n = tree.points.len();
     let is_few = |count: usize| count < MIN_REDUCED.min(n);
     if let Some(params) = &params.reduce {
