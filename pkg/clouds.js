@@ -1,4 +1,4 @@
-/** The caller's clouds and bytes on their way in: of the right kind, and no longer the caller's memory. */
+/** The caller's clouds on their way in: of the right kind, and no longer the caller's memory. */
 import { own } from './arrays.js';
 import { PointweaveError } from './errors.js';
 
@@ -26,19 +26,6 @@ export function resultArgument(result, transfer) {
   if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
   if (indices !== undefined) expectArray('indices', indices, Uint32Array);
   return own({ positions, indices, ...optionalArrays({ colors, normals, attributes, origin }) }, transfer);
-}
-
-/**
- * A file's bytes.
- * @param {unknown} data
- * @param {boolean} [transfer]
- * @returns {Promise<Uint8Array>}
- */
-export async function bytesArgument(data, transfer) {
-  if (typeof Blob !== 'undefined' && data instanceof Blob) return new Uint8Array(await data.arrayBuffer());
-  if (data instanceof ArrayBuffer) return own(new Uint8Array(data), transfer);
-  if (ArrayBuffer.isView(data)) return own(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), transfer);
-  throw badInput('data', 'a File, Blob, ArrayBuffer or Uint8Array', data);
 }
 
 /**

@@ -2,7 +2,7 @@
  * One wasm instance and the calls into it. Runs where it is imported: in a worker, or in the caller's
  * own thread.
  */
-import { PointweaveError, fromTrap } from './errors.js';
+import { PointweaveError, fromTrap, isFatal } from './errors.js';
 import { track } from './progress.js';
 
 /** @import { Build, Progress } from './types.js' */
@@ -10,36 +10,36 @@ import { track } from './progress.js';
 /**
  * A function of `src/wasm.rs` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
 /**
- * The module that wasm-bindgen writes, as far as it is used here.
+ * An instance and the functions that wasm-bindgen writes for it, as far as they are used here.
  * @typedef {{
- *   default: (from: { module_or_path: WebAssembly.Module, memory?: WebAssembly.Memory }) => Promise<{ memory: WebAssembly.Memory }>,
+ *   instantiate: (from: { module_or_path: WebAssembly.Module, memory?: WebAssembly.Memory }) => Promise<unknown>,
  *   panicMessage: () => string,
  * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
  */
 
+/** The engine's builds, and those that hold readers of files alone. @typedef {Build | 'files' | 'las' | 'e57'} WasmBuild */
+
 /**
  * @typedef {object} CoreOptions
- * @property {Build} build
+ * @property {WasmBuild} build
  * @property {WebAssembly.Module} module the compiled wasm of that build
- * @property {WebAssembly.Memory} [memory] another instance's, for a thread of its pool
+ * @property {WebAssembly.Memory} [memory] of the threads build, shared by all instances of a pool
  */
 
 export class Core {
   /** @type {Glue} */
   #glue;
+  /** Whether it can be called again. */
+  alive = true;
 
-  /**
-   * @param {Glue} glue an instance of its own, started
-   * @param {WebAssembly.Memory} memory
-   */
-  constructor(glue, memory) {
+  /** @param {Glue} glue an instance of its own, started */
+  constructor(glue) {
     this.#glue = glue;
-    this.memory = memory;
   }
 
   /**
@@ -47,8 +47,8 @@ export class Core {
    * @param {CoreOptions} options
    */
   static async start(glue, { module, memory }) {
-    const exports = await glue.default({ module_or_path: module, memory });
-    return new Core(glue, exports.memory);
+    await glue.instantiate({ module_or_path: module, memory });
+    return new Core(glue);
   }
 
   /**
@@ -63,7 +63,9 @@ export class Core {
       progress.finish();
       return result;
     } catch (thrown) {
-      throw isRecord(thrown) ? new PointweaveError(thrown) : fromTrap(thrown, this.#panic());
+      const error = isRecord(thrown) ? new PointweaveError(thrown) : fromTrap(thrown, this.#panic());
+      this.alive = !isFatal(error);
+      throw error;
     }
   }
 

@@ -2,15 +2,20 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
  * that does them.
  */
-import { bytesArgument, cloudArgument, resultArgument } from './clouds.js';
+import { awake } from './awake.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { compressorFor } from './compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './hosts.js';
+import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { readFile, readerError, readerOf } from './reading.js';
+import { signed } from './reports.js';
+import { slicesOf } from './slices.js';
 
 /** @import { Build, EngineOptions } from './types.js' */
 /** @import { Host, Watch, WorkerLike } from './hosts.js' */
-/** @import { Glue, Request } from './core.js' */
+/** @import { Glue, Request, WasmBuild } from './core.js' */
 
 /**
  * What differs between a browser and Node.
@@ -18,25 +23,39 @@ import { checkEngineOptions, checkModel, checkOptions } from './options.js';
  * @property {boolean} worker whether the single-threaded build gets a worker unless it is told
  * @property {() => number} cores
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
- * @property {(build: Build, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
- * @property {(build: Build) => Promise<Glue>} loadGlue an instance of its own, not started
- * @property {() => WorkerLike} startWorker
+ * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
+ * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
 /** More threads than this cost memory and gain nothing. */
 const MOST_AUTO_THREADS = 16;
+
+/** How long a host without a call keeps its workers and memory; to start anew takes some tenths of a second. */
+const IDLE_MS = 60_000;
+
+/** A timer of longer than this would fire at once. */
+const LONGEST_TIMER_MS = 2 ** 31 - 1;
 
 export class Engine {
   /** @type {Platform} */
   #platform;
   #worker;
   #wasmUrl;
+  #workerUrl;
+  #idleMs;
   /** What computes, and why. @type {ReturnType<typeof chooseBuild>} */
   #choice;
+  /** What else is to be said of it. */
+  #note = '';
   /** Ends when the last call of the queue has. @type {Promise<unknown>} */
   #tail = Promise.resolve();
   /** @type {Promise<Host> | undefined} */
   #host;
+  /** Calls that have not ended. */
+  #calls = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #idle;
   #disposal = new AbortController();
 
   /**
@@ -45,10 +64,12 @@ export class Engine {
    * @param {EngineOptions} [options]
    */
   constructor(platform, options) {
-    const { threads = 'auto', worker, wasmUrl } = checkEngineOptions(options);
+    const { threads = 'auto', worker, wasmUrl, workerUrl, idleMs = IDLE_MS } = checkEngineOptions(options);
     this.#platform = platform;
     this.#worker = worker;
     this.#wasmUrl = wasmUrl;
+    this.#workerUrl = workerUrl;
+    this.#idleMs = idleMs;
     this.#choice = chooseBuild(platform, threads, worker);
   }
 
@@ -61,7 +82,7 @@ export class Engine {
   }
 
   get reason() {
-    return this.#choice.reason;
+    return [this.#choice.reason, this.#note].filter(Boolean).join('; ');
   }
 
   /** @param {any} cloud @param {any} [options] */
@@ -85,8 +106,12 @@ export class Engine {
   /** @param {any} data @param {any} [options] */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
-    const bytes = await bytesArgument(data, transfer);
-    return this.#run({ call: 'read', args: [bytes, { name: data.name, ...own }] }, watch);
+    const file = slicesOf(data, transfer);
+    const given = { name: data.name, ...own };
+    return this.#queued(watch, async (signal) => {
+      const reader = await readerOf(file, own.format);
+      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+    });
   }
 
   /** @param {any} result @param {any} [options] */
@@ -108,19 +133,48 @@ export class Engine {
   async dispose() {
     if (this.#disposal.signal.aborted) return;
     this.#disposal.abort(new PointweaveError({ code: 'disposed', message: 'the engine was disposed of' }));
-    const host = this.#host;
-    this.#host = undefined;
-    await host?.then((started) => started.end(), nothing);
+    clearTimeout(this.#idle);
+    await this.#endHost();
   }
 
-  /** Starts the host, when there is none. A start that fails is forgotten, so that the next call tries again. */
-  ready() {
+  /** Starts the host before the first call. It ends when none comes. */
+  async ready() {
+    await this.#busy(() => this.#started());
+  }
+
+  /** The host, started when there is none. A start that fails is forgotten, so that the next call tries again. */
+  #started() {
     this.#disposal.signal.throwIfAborted();
     this.#host ??= this.#start().catch((error) => {
       this.#host = undefined;
       throw error;
     });
     return this.#host;
+  }
+
+  async #endHost() {
+    const host = this.#host;
+    this.#host = undefined;
+    await host?.then((started) => started.end(), nothing);
+  }
+
+  /**
+   * Does something with the host, which ends when nothing has been done with it for long enough.
+   * @template T
+   * @param {() => Promise<T>} work
+   */
+  async #busy(work) {
+    this.#calls++;
+    clearTimeout(this.#idle);
+    try {
+      return await awake(work());
+    } finally {
+      this.#calls--;
+      if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {
+        this.#idle = setTimeout(() => this.#endHost(), this.#idleMs);
+        if (typeof this.#idle === 'object') this.#idle.unref(); // Node does not wait for it
+      }
+    }
   }
 
   /**
@@ -140,31 +194,57 @@ export class Engine {
    * @param {Request} request
    * @param {Watch} watch
    */
-  async #run(request, { signal: own, onProgress }) {
-    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
-    const before = this.#tail;
-    const result = unlessAborted(before, signal).then(async () => {
-      const host = await unlessAborted(this.ready(), signal);
+  async #run(request, watch) {
+    return this.#queued(watch, async (signal) => {
+      const host = await unlessAborted(this.#started(), signal);
       try {
-        const value = await host.run(request, { signal, onProgress });
-        return this.#signed(value);
+        return signed(await host.run(request, { signal, onProgress: watch.onProgress }), this);
       } finally {
         if (!host.usable()) this.#host = undefined;
       }
+    });
+  }
+
+  /**
+   * Waits for the calls before, then does a job; those after wait for it.
+   * @template T
+   * @param {Watch} watch
+   * @param {(signal: AbortSignal) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #queued({ signal: own }, job) {
+    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
+    const before = this.#tail;
+    const result = this.#busy(async () => {
+      await unlessAborted(before, signal);
+      return unlessAborted(job(signal), signal);
     });
     this.#tail = Promise.all([before, result.then(nothing, nothing)]);
     return result;
   }
 
   /**
-   * Says in the report what has computed it.
-   * @param {any} value
+   * Does something with a reader's wasm, which is loaded for it and ends after it, with its memory.
+   * @template T
+   * @param {import('./reading.js').Reader} reader
+   * @param {AbortSignal} signal
+   * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
+   * @returns {Promise<T>}
    */
-  #signed(value) {
-    for (const report of [value.report, value.cloud?.report]) {
-      if (report) Object.assign(report, this.#choice, { reason: [this.reason, report.reason].filter(Boolean).join('; ') });
+  async #withReader(reader, signal, job) {
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await unlessAborted(compile(reader, this.#wasmUrl), signal);
+    const inWorker = this.build === 'threads' || (this.#worker ?? worker);
+    const host = await (inWorker
+      ? workerHost(() => startWorker(this.#workerUrl), { build: reader, threads: 1, module })
+      : inProcessHost(await loadGlue(reader), { build: reader, module }));
+    try {
+      return await job((request) => host.run(request, { signal }));
+    } catch (error) {
+      throw readerError(error, reader);
+    } finally {
+      host.end();
     }
-    return value;
   }
 
   /** @returns {Promise<Host>} */
@@ -184,8 +264,15 @@ export class Engine {
     const { build, threads } = this;
     const { compile, loadGlue, startWorker, worker } = this.#platform;
     const module = await compile(build, this.#wasmUrl);
-    return build === 'threads' || (this.#worker ?? worker)
-      ? workerHost(startWorker, { build, threads, module })
+    const startOne = () => startWorker(this.#workerUrl);
+    if (build === 'threads') {
+      const { memory, note } = sharedMemory();
+      const host = await workerHost(startOne, { build, threads, module, memory });
+      this.#note = note;
+      return host;
+    }
+    return this.#worker ?? worker
+      ? workerHost(startOne, { build, threads, module })
       : inProcessHost(await loadGlue(build), { build, module });
   }
 }

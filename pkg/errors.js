@@ -43,6 +43,14 @@ export function toRecord(error) {
 }
 
 /**
+ * Whether an instance that threw this must not be called again.
+ * @param {unknown} error
+ */
+export function isFatal(error) {
+  return !(error instanceof PointweaveError) || error.code === 'internal' || error.code === 'out-of-memory';
+}
+
+/**
  * The error for a wasm instance that died while it worked.
  *
  * A Rust panic leaves its text behind. A failed allocation aborts without any, by an `unreachable`

@@ -4,7 +4,7 @@
  */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
-import { PointweaveError } from './errors.js';
+import { PointweaveError, isFatal } from './errors.js';
 
 /** @import { Build, Progress } from './types.js' */
 /** @import { CoreOptions, Glue, Request } from './core.js' */
@@ -42,57 +42,70 @@ const POOL_LIMIT_MS = 30_000;
  */
 export async function inProcessHost(glue, options) {
   const core = await Core.start(glue, options);
-  let usable = true;
+  let ended = false;
   return {
-    async run(request, { signal, onProgress }) {
+    async run(request, watch) {
       await nextTask(); // timers and events between two calls get their turn: an abort among them is seen
-      signal?.throwIfAborted();
-      /** @type {{ error: unknown } | undefined} */
-      let stopped;
-      try {
-        return core.run(request, (progress) => {
-          try {
-            onProgress?.(progress);
-            signal?.throwIfAborted();
-          } catch (error) {
-            stopped = { error };
-          }
-          return stopped !== undefined;
-        });
-      } catch (error) {
-        if (stopped) throw stopped.error;
-        usable = !isFatal(error);
-        throw error;
-      }
+      watch.signal?.throwIfAborted();
+      return runHere(core, request, watch);
     },
-    usable: () => usable,
-    end: () => void (usable = false),
+    usable: () => core.alive && !ended,
+    end: () => void (ended = true),
   };
 }
 
 /**
+ * Does a request in this thread, which hears of an abort only when it comes from `onProgress`.
+ * @param {Core} core
+ * @param {Request} request
+ * @param {Watch} watch
+ */
+export function runHere(core, request, { signal, onProgress }) {
+  /** @type {{ error: unknown } | undefined} */
+  let stopped;
+  try {
+    return core.run(request, (progress) => {
+      try {
+        onProgress?.(progress);
+        signal?.throwIfAborted();
+      } catch (error) {
+        stopped = { error };
+      }
+      return stopped !== undefined;
+    });
+  } catch (error) {
+    throw stopped ? stopped.error : error;
+  }
+}
+
+/**
  * @param {() => WorkerLike} startWorker
- * @param {CoreOptions & { threads: number }} options
+ * @param {CoreOptions & { threads: number, poolLimitMs?: number }} options
  * @returns {Promise<Host>}
  */
-export async function workerHost(startWorker, { build, threads, module }) {
+export async function workerHost(startWorker, { build, threads, module, memory, poolLimitMs = POOL_LIMIT_MS }) {
   /** The first computes, the others lend it their threads. */
   const workers = [connect(startWorker())];
   const [main] = workers;
   let alive = true;
   const end = () => {
+    if (!alive) return;
     alive = false;
     for (const worker of workers) worker.terminate();
   };
+  /** @type {(error: unknown) => void} */
+  let fail = () => {};
+  const dead = new Promise((_, reject) => (fail = reject));
+  dead.catch(() => {}); // whoever waits for it hears of it
   /** @param {unknown} error */
   const die = (error) => {
     end();
-    main.fail(error);
+    fail(error);
   };
 
   const start = async () => {
-    const memory = await main.ask({ start: { build, module } });
-    if (build === 'single') return;
+    await main.ask({ start: { build, module, memory } });
+    if (build !== 'threads' || !alive) return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
     await Promise.all(pool.map((worker) => worker.ask({ start: { build, module, memory } })));
@@ -101,11 +114,11 @@ export async function workerHost(startWorker, { build, threads, module }) {
   };
 
   const late = build === 'threads' && setTimeout(() => {
-    die(new PointweaveError({ code: 'internal', message: `no pool within ${POOL_LIMIT_MS / 1000} s` }));
-  }, POOL_LIMIT_MS);
+    die(new PointweaveError({ code: 'internal', message: `no pool within ${poolLimitMs / 1000} s` }));
+  }, poolLimitMs);
   main.hold(true);
   try {
-    await start();
+    await Promise.race([start(), dead]);
   } catch (error) {
     end();
     throw error;
@@ -120,13 +133,14 @@ export async function workerHost(startWorker, { build, threads, module }) {
       signal?.addEventListener('abort', abort);
       main.hold(true);
       try {
-        return await main.ask({ request }, (progress) => {
+        const answer = main.ask({ request }, (progress) => {
           try {
-            onProgress?.(progress);
+            if (alive) onProgress?.(progress);
           } catch (error) {
             die(error);
           }
         });
+        return await Promise.race([answer, dead]);
       } catch (error) {
         if (isFatal(error)) end();
         throw error;
@@ -147,13 +161,17 @@ export async function workerHost(startWorker, { build, threads, module }) {
 function connect(worker) {
   /** @type {{ resolve: (value: any) => void, reject: (error: unknown) => void, progress?: (progress: Progress) => void }} */
   let asked = { resolve() {}, reject() {} };
+  let started = false;
   worker.listen(
     (message) => {
+      started = true;
       if ('progress' in message) asked.progress?.(message.progress);
       else if ('error' in message) asked.reject(new PointweaveError(message.error));
       else asked.resolve(message.value);
     },
-    (why) => asked.reject(new PointweaveError({ code: 'internal', message: `the worker died: ${why}` })),
+    (why) => asked.reject(started
+      ? new PointweaveError({ code: 'internal', message: `the worker died: ${why}` })
+      : new PointweaveError({ code: 'load-failed', message: `the worker did not start: ${why}` })),
   );
   return {
     /**
@@ -165,23 +183,12 @@ function connect(worker) {
       new Promise((resolve, reject) => {
         asked = { resolve, reject, progress };
         worker.post(message, buffersOf(message));
+      }).finally(() => {
+        asked.progress = undefined; // an idle worker keeps nothing of its last caller
       }),
-    /** Rejects the question under way. @param {unknown} error */
-    fail(error) {
-      asked.progress = undefined;
-      asked.reject(error);
-    },
     hold: worker.hold,
     terminate: worker.terminate,
   };
-}
-
-/**
- * Whether an instance that threw this must not be called again.
- * @param {unknown} error
- */
-function isFatal(error) {
-  return !(error instanceof PointweaveError) || error.code === 'internal' || error.code === 'out-of-memory';
 }
 
 /** Resolves after the events that are already waiting. */

@@ -99,7 +99,7 @@ const RECONSTRUCT = {
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
-  format: rule("'ply' or 'xyz'", (value) => value === 'ply' || value === 'xyz'),
+  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57'), fallback: undefined },
 };
 
 const WRITE = {
@@ -119,9 +119,11 @@ const SAMPLE = {
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
   worker: flag(),
+  workerUrl: rule("the URL of the worker's script", isUrl),
+  idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
-    'the URL of the folder that holds single/ and threads/, or an object { single, threads } of file URLs',
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => (key === 'single' || key === 'threads') && isUrl(value[key]))),
+    'the URL of the folder that holds single/, threads/, files/, las/ and e57/, or an object { single, threads, files, las, e57 } of file URLs',
+    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => ['single', 'threads', 'files', 'las', 'e57'].includes(key) && isUrl(value[key]))),
   ),
 };
 
@@ -170,6 +172,14 @@ export function checkEngineOptions(options = {}) {
 }
 
 /**
+ * @param {unknown} options
+ * @returns {import('./types.core.js').CoreOptions}
+ */
+export function checkCoreOptions(options = {}) {
+  return checkTable({ wasmUrl: ENGINE.wasmUrl }, options, '');
+}
+
+/**
  * The options that are given (not `undefined`), once each of them is accepted.
  * @param {Record<string, Rule>} table
  * @param {unknown} options
@@ -183,7 +193,14 @@ function checkTable(table, options, path) {
     if (!Object.hasOwn(table, key)) throw unknownOption(path + key, key, Object.keys(table));
     if (!table[key].accepts(value, path + key)) throw badOption(path + key, table[key].expected, value);
   }
-  return Object.fromEntries(given);
+  return Object.fromEntries(given.map(([key, value]) => [key, withoutUndefined(value)]));
+}
+
+/** An object of options in options, without those that are not given; whatever else as it is. @param {unknown} value @returns {unknown} */
+function withoutUndefined(value) {
+  if (Object.prototype.toString.call(value) !== '[object Object]') return value;
+  const given = Object.entries(/** @type {object} */ (value)).filter(([, inner]) => inner !== undefined);
+  return Object.fromEntries(given.map(([key, inner]) => [key, withoutUndefined(inner)]));
 }
 
 /** @param {Record<string, unknown>} options of `write` */

@@ -4,7 +4,7 @@ import { availableParallelism } from 'node:os';
 import { pathToFileURL } from 'node:url';
 import { Worker } from 'node:worker_threads';
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './glue.node.js';
+import { loadGlue } from './glue.js';
 import { compileOnce } from './modules.js';
 
 /** @type {import('./engine.js').Platform} */
@@ -14,8 +14,9 @@ export const platform = {
   threads: () => ({ possible: true, reason: 'Node has threads' }),
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl).href, compileFrom),
   loadGlue,
-  startWorker() {
-    const worker = new Worker(new URL('./worker.node.js', import.meta.url), { name: 'pointweave', execArgv: [] });
+  startWorker(workerUrl) {
+    const script = workerUrl ? new URL(workerUrl, pathToFileURL('./')) : new URL('./worker.node.js', import.meta.url);
+    const worker = new Worker(script, { name: 'pointweave', execArgv: [] });
     return {
       post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
@@ -31,7 +32,7 @@ export const platform = {
 };
 
 /**
- * @param {import('./types.js').Build} build
+ * @param {import('./core.js').WasmBuild} build
  * @param {import('./types.js').EngineOptions['wasmUrl']} given
  * @returns {URL}
  */

@@ -1,7 +1,8 @@
 /** Browsers. Nothing here runs before an engine is made, so a server may import it. */
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './glue.web.js';
+import { loadGlue } from './glue.js';
 import { compileOnce } from './modules.js';
+import { startScript } from './worker-script.js';
 
 /** @type {import('./engine.js').Platform} */
 export const platform = {
@@ -13,13 +14,13 @@ export const platform = {
       : { possible: false, reason: 'the page is not cross-origin isolated' },
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl), compileFrom),
   loadGlue,
-  startWorker() {
-    const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'pointweave' });
+  startWorker(workerUrl) {
+    const worker = startScript(workerUrl);
     return {
       post: (message, transfer) => worker.postMessage(message, transfer),
       listen(receive, fail) {
         worker.onmessage = ({ data }) => receive(data);
-        worker.onerror = (event) => fail(event.message ?? 'its script did not load');
+        worker.onerror = ({ message }) => fail(message ?? 'its script did not load');
         worker.onmessageerror = () => fail('a message was not understood');
       },
       hold() {}, // a page never waits for its workers
@@ -30,13 +31,17 @@ export const platform = {
 
 /**
  * The URLs are spelled out for bundlers to see them.
- * @param {import('./types.js').Build} build
+ * @param {import('./core.js').WasmBuild} build
  * @param {import('./types.js').EngineOptions['wasmUrl']} given
  */
 function wasmFile(build, given) {
-  const file = build === 'threads'
-    ? new URL('./wasm/threads/pointweave_bg.wasm', import.meta.url)
-    : new URL('./wasm/single/pointweave_bg.wasm', import.meta.url);
+  const file = {
+    single: () => new URL('./wasm/single/pointweave_bg.wasm', import.meta.url),
+    threads: () => new URL('./wasm/threads/pointweave_bg.wasm', import.meta.url),
+    files: () => new URL('./wasm/files/pointweave_bg.wasm', import.meta.url),
+    las: () => new URL('./wasm/las/pointweave_bg.wasm', import.meta.url),
+    e57: () => new URL('./wasm/e57/pointweave_bg.wasm', import.meta.url),
+  }[build]();
   if (!given) return file.href;
   if (typeof given === 'string' || given instanceof URL) return new URL(`${given}`.replace(/\/?$/, `/${build}/pointweave_bg.wasm`), location.href).href;
   return given[build] ? new URL(given[build], location.href).href : file.href;

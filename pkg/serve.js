@@ -5,6 +5,7 @@
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { toRecord } from './errors.js';
+import { loadGlue } from './glue.js';
 
 /**
  * @typedef {{ start: import('./core.js').CoreOptions } | { request: import('./core.js').Request }} ToWorker
@@ -14,9 +15,8 @@ import { toRecord } from './errors.js';
 /**
  * @param {{ listen: (receive: (message: ToWorker) => void) => void,
  *   post: (message: FromWorker, transfer?: ArrayBuffer[]) => void }} port
- * @param {(build: import('./types.js').Build) => Promise<import('./core.js').Glue>} loadGlue
  */
-export function serve(port, loadGlue) {
+export function serve(port) {
   /** @type {Core} */
   let core;
 
@@ -29,7 +29,6 @@ export function serve(port, loadGlue) {
       });
     }
     core = await Core.start(await loadGlue(message.start.build), message.start);
-    return message.start.build === 'threads' ? core.memory : undefined; // to share it
   };
 
   port.listen((message) => {

@@ -21,7 +21,7 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
 }
 
 /** The steps of a call, in the order in which they run. */
-export type Stage = 'octree' | 'features' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
+export type Stage = 'read' | 'octree' | 'features' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
 
 export interface Progress {
   stage: Stage;
@@ -226,7 +226,10 @@ export interface SurfaceReport extends ReduceReport {
   residual: Distances;
   /** Share of the input that stayed beyond the accuracy. */
   beyondAccuracy: number;
+  /** How far the local functions disagree on which side is out: -1 where all agree, 1 where none do. */
   orientationEnergy: number;
+  /** The same before conflicts were solved over the whole graph. */
+  orientationEnergyBefore: number;
 }
 
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
@@ -268,7 +271,21 @@ export interface CloudInfo {
   noise: number;
 }
 
-export type Format = 'ply' | 'xyz';
+/** Formats that are read; LAS is LAZ, too, and `'xyz'` any rows of numbers as text. */
+export type Format = 'ply' | 'xyz' | 'pcd' | 'obj' | 'off' | 'stl' | 'glb' | 'las' | 'e57';
+
+/** What a file held. Coordinates are the file's: `Float64Array` where single precision would move one by more than 2⁻²² of the diagonal, and for LAS. */
+export interface FileCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> extends PointCloud<Positions> {
+  file: {
+    format: Format;
+    /** Points left out because a coordinate was NaN or infinite, or marked as invalid. */
+    dropped: number;
+    /** Values of colours, normals and attributes that were NaN or infinite and are now 0. */
+    replaced: number;
+    /** Faces that the file has; they are not read. */
+    faces: number;
+  };
+}
 
 export interface ReadOptions {
   /** The file's name; its extension decides between formats that look alike. A `File` brings its own. */
@@ -336,8 +353,21 @@ export interface EngineOptions {
    * the single-threaded one.
    */
   worker?: boolean;
-  /** The folder that holds `single/` and `threads/`, or the URL of either wasm file. Default: beside the package. */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL };
+  /**
+   * The folder that holds `single/`, `threads/`, `files/`, `las/` and `e57/`, or the URLs of the wasm files. The last three are
+   * loaded when a file of theirs is read. Default: beside the package.
+   */
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL };
+  /**
+   * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
+   * another origin is started through a `blob:` URL.
+   */
+  workerUrl?: string | URL;
+  /**
+   * Milliseconds without a call after which the workers end and the memory is freed; the next call starts them anew.
+   * Default 60,000; `Infinity` keeps them until `dispose`.
+   */
+  idleMs?: number;
 }
 
 /** The functions of the package with a queue, a worker and a build of their own. */
@@ -351,7 +381,11 @@ export interface Engine {
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
   inspect(cloud: PointCloud, options?: CallOptions): Promise<CloudInfo>;
-  read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<PointCloud>;
+  /**
+   * Reads in slices, so a `File` is never in memory as a whole unless its format needs that (LAZ, E57, GLB, packed PCD). Bytes
+   * beyond the first 4 MiB of a buffer are copied while it is read: leave them alone meanwhile.
+   */
+  read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<FileCloud>;
   write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: WriteOptions & CallOptions): Promise<Uint8Array>;
   /** A generated scan of a model whose true surface is known: several views, uneven density, noise. */
   sample(model: Model, options?: SampleOptions & CallOptions): Promise<PointCloud<Float32Array>>;
@@ -375,7 +409,7 @@ export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reco
 export type ErrorCode =
   | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
   | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
-  | 'bad-index' | 'needs-triangles' | 'missing-package';
+  | 'bad-index' | 'needs-triangles' | 'missing-package' | 'no-webgl';
 
 /** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
 export class PointweaveError extends Error {

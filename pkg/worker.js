@@ -1,13 +1,9 @@
 /** A browser's worker. */
-import { loadGlue } from './glue.web.js';
 import { serve } from './serve.js';
 
 const scope = /** @type {Worker} */ (/** @type {unknown} */ (globalThis));
 
-serve(
-  {
-    listen: (receive) => void (scope.onmessage = ({ data }) => receive(data)),
-    post: (message, transfer = []) => scope.postMessage(message, transfer),
-  },
-  loadGlue,
-);
+serve({
+  listen: (receive) => void (scope.onmessage = ({ data }) => receive(data)),
+  post: (message, transfer = []) => scope.postMessage(message, transfer),
+});

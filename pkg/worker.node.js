@@ -1,14 +1,10 @@
 /** A Node worker. */
 import { parentPort } from 'node:worker_threads';
-import { loadGlue } from './glue.node.js';
 import { serve } from './serve.js';
 
 const port = /** @type {import('node:worker_threads').MessagePort} */ (parentPort);
 
-serve(
-  {
-    listen: (receive) => void port.on('message', receive),
-    post: (message, transfer = []) => port.postMessage(message, transfer),
-  },
-  loadGlue,
-);
+serve({
+  listen: (receive) => void port.on('message', receive),
+  post: (message, transfer = []) => port.postMessage(message, transfer),
+});

@@ -90,8 +90,13 @@ pub mod pipeline;
 pub mod formats;
 pub mod samples;
 
+// The border to JavaScript.
 #[cfg(target_arch = "wasm32")]
+mod js;
+#[cfg(all(target_arch = "wasm32", feature = "engine"))]
 pub mod wasm;
+#[cfg(all(target_arch = "wasm32", not(feature = "engine")))]
+pub mod wasm_read;
 
 pub use cloud::Cloud;
 pub use error::{Error, Result};

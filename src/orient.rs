@@ -39,6 +39,9 @@ pub struct Signs {
     pub signs: Vec<f32>,
     /// E = −Σ w_ab s_a s_b over all edges, divided by Σ |w|: −1 when all edges agree.
     pub energy: f64,
+    /// The same for the signs that were handed on from neighbour to neighbour, before conflicts were solved over the whole
+    /// graph.
+    pub energy_before: f64,
     /// Oriented unit normal of every site; zero where the site belongs to no sub-domain.
     pub normals: Vec<Vec3>,
     /// Whether the sub-domain is part of a surface: its connected component has at least [`SMALLEST`] sites of its own,
@@ -94,13 +97,18 @@ pub fn orient(
     let edges = edges(fits, sites, &gradients);
     let adjacency = Adjacency::new(n, &edges);
     let mut signs = vec![1.0; n];
+    let mut energy_before = energy(&edges, &signs);
     let components = adjacency.components();
     if !sites.oriented {
         match propagation {
-            Propagation::Paper => advancing_front(fits, sites, &edges, &adjacency, &mut signs),
+            Propagation::Paper => {
+                advancing_front(fits, sites, &edges, &adjacency, &mut signs);
+                energy_before = energy(&edges, &signs);
+            }
             Propagation::Global => {
                 let forest = Forest::strongest_first(n, &edges);
                 signs.copy_from_slice(&forest.signs);
+                energy_before = energy(&edges, &signs);
                 forest.flip_branches(&edges, &mut signs);
                 flip_single(&edges, &adjacency, &mut signs);
             }
@@ -121,6 +129,7 @@ pub fn orient(
     progress.update(Stage::Orient, 1.0)?;
     Ok(Signs {
         energy: energy(&edges, &signs),
+        energy_before,
         signs,
         normals,
         kept,

@@ -227,14 +227,14 @@ fn reconstruct_input(
 }
 
 /// The reduced cloud, and where its points are for the fit.
-type ToFit = (Reduced, Vec<Vec3>);
+type Reduction = (Reduced, Vec<Vec3>);
 
 /// What is remembered of a cloud from one call to the next.
 #[derive(Debug, Default)]
 pub struct Memory {
     input: Option<Input<'static>>,
     /// How it was reduced, and what came out.
-    fitted: Option<(Option<ReduceParams>, ToFit)>,
+    fitted: Option<(Option<ReduceParams>, Reduction)>,
 }
 
 /// [`reconstruct_owned`] that does not do again what the call before has done for the same cloud, to the same bytes: the
@@ -298,7 +298,7 @@ struct Measured {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions): ToFit,
+    (mut reduced, positions): Reduction,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -367,6 +367,7 @@ fn surface(
         residual: DistanceStats::of(residuals()),
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
+        orientation_energy_before: signs.energy_before,
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
@@ -631,7 +632,7 @@ fn points_to_fit(
     mut features: Features,
     params: &SurfaceParams,
     progress: &mut dyn Progress,
-) -> Result<ToFit> {
+) -> Result<Reduction> {
     let n = tree.points.len();
     let is_few = |count: usize| count < MIN_REDUCED.min(n);
     if let Some(params) = &params.reduce {

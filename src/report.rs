@@ -129,8 +129,10 @@ pub struct SurfaceReport {
     pub residual: DistanceStats,
     /// Share of the input points (0-1) whose residual is beyond the accuracy asked for.
     pub beyond_accuracy: f64,
-    /// Energy of the chosen signs: what the local functions disagree on, 0 where all agree.
+    /// Energy of the chosen signs ([`crate::orient`]): −1 where all local functions agree, 1 where none do.
     pub orientation_energy: f64,
+    /// The same before conflicts were solved over the whole graph.
+    pub orientation_energy_before: f64,
 }
 
 /// The connectivity of a triangle mesh.

@@ -1,4 +1,4 @@
-//! The border to JavaScript, and the only file that knows of it: typed arrays and one options object in, plain objects
+//! The pipeline from JavaScript; what reads files is `wasm_read`, what both need `js`. Typed arrays and one options object in, plain objects
 //! of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
 //! `pkg/` turns them into its `PointweaveError`.
 //!
@@ -6,7 +6,8 @@
 
 use crate::cloud::{Attribute, Cloud};
 use crate::error::Error;
-use crate::formats::{self, Format, Output, Positions, RawCloud, WriteOptions};
+use crate::formats::{self, Output, Positions, RawCloud, WriteOptions};
+use crate::js::{JsResult, object, optional};
 use crate::params::{ReduceParams, SurfaceParams};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::progress::{Progress, Stage};
@@ -18,33 +19,7 @@ use js_sys::{
 };
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
-
-type JsResult = Result<JsValue, JsValue>;
-
-/// The text of the panic that ended this instance.
-static PANIC: Mutex<String> = Mutex::new(String::new());
-
-/// Keeps a panic's text for [`panic_message`], and shows it on the console.
-#[wasm_bindgen(start)]
-pub fn start() {
-    std::panic::set_hook(Box::new(|info| {
-        web_sys::console::error_1(&info.to_string().into());
-        if let Ok(mut message) = PANIC.lock() {
-            *message = info.to_string();
-        }
-    }));
-}
-
-/// What the panic said that ended this instance, or an empty string.
-#[wasm_bindgen(js_name = panicMessage)]
-pub fn panic_message() -> String {
-    PANIC
-        .lock()
-        .map(|mut message| std::mem::take(&mut *message))
-        .unwrap_or_default()
-}
 
 /// Builds the pool of `threads` workers; blocks until as many have called `lendThread`. `pkg/hosts.js` starts them.
 #[cfg(feature = "threads")]
@@ -112,40 +87,6 @@ pub fn inspect(cloud: &PointCloud, progress: Function) -> JsResult {
         Positions::F64(values) => values,
     };
     to_js(&pipeline::inspect(&positions, &mut JsProgress(progress))?)
-}
-
-/// Options of [`read`].
-#[derive(Deserialize)]
-struct ReadOptions {
-    name: Option<String>,
-    format: Option<String>,
-}
-
-/// [`formats::read`] of `{ name, format }`, both optional: a cloud.
-#[wasm_bindgen]
-pub fn read(bytes: &[u8], options: JsValue) -> JsResult {
-    let ReadOptions { name, format } = from_js(options)?;
-    let format = match format {
-        Some(format) => format_named(&format)?,
-        None => formats::detect(bytes, name.as_deref())?,
-    };
-    let cloud = formats::read(bytes, format)?;
-    let positions = match &cloud.positions {
-        Positions::F32(values) => Float32Array::from(&values[..]).into(),
-        Positions::F64(values) => Float64Array::from(&values[..]).into(),
-    };
-    let fields = object([
-        ("positions", positions),
-        (
-            "colors",
-            optional(&cloud.colors, |c| Uint8Array::from(&c[..])),
-        ),
-        (
-            "normals",
-            optional(&cloud.normals, |n| Float32Array::from(&n[..])),
-        ),
-    ])?;
-    attach(fields, &cloud.attributes, cloud.origin)
 }
 
 /// Options of [`write`].
@@ -350,12 +291,6 @@ fn colors_to_js(colors: &Option<Vec<[u8; 3]>>) -> JsValue {
     optional(colors, |colors| Uint8Array::from(colors.as_flattened()))
 }
 
-fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
-    value
-        .as_ref()
-        .map_or(JsValue::UNDEFINED, |value| array(value).into())
-}
-
 /// Adds `attributes` and `origin`, where there are any.
 fn attach(cloud: JsValue, attributes: &[Attribute], origin: Option<[f64; 3]>) -> JsResult {
     if !attributes.is_empty() {
@@ -393,22 +328,6 @@ impl Progress for JsProgress {
     }
 }
 
-impl From<Error> for JsValue {
-    fn from(error: Error) -> JsValue {
-        let index = error
-            .index()
-            .map_or(JsValue::UNDEFINED, |i| (i as f64).into());
-        let fields = [
-            ("code", error.code().into()),
-            ("message", error.to_string().into()),
-            ("index", index),
-            ("expected", error.expected().into()),
-            ("found", error.found().into()),
-        ];
-        object(fields).unwrap_or_else(|failed| failed)
-    }
-}
-
 fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
     Error::BadOption {
         option: option.into(),
@@ -418,21 +337,10 @@ fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
 }
 
 fn format_named(name: &str) -> Result<Format, Error> {
-    Format::ALL
+    Format::WRITTEN
         .into_iter()
         .find(|format| format.name() == name)
         .ok_or_else(|| bad_option("format", "ply or xyz", name))
-}
-
-/// An object with these properties; those that are undefined are left out.
-fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
-    let object = Object::new();
-    for (name, value) in fields {
-        if !value.is_undefined() {
-            Reflect::set(&object, &name.into(), &value)?;
-        }
-    }
-    Ok(object.into())
 }
 
 /// A report or table as a plain object.

@@ -126,7 +126,14 @@ fn every_kernel_and_both_propagations_agree_with_the_truth() {
                 propagation,
                 ..unreduced()
             };
-            check(Shape::Torus, &surface(&positions, &params).unwrap(), 4e-3);
+            let s = surface(&positions, &params).unwrap();
+            check(Shape::Torus, &s, 4e-3);
+            let (after, before) = (
+                s.report.orientation_energy,
+                s.report.orientation_energy_before,
+            );
+            assert!((-1.0..-0.9).contains(&after), "{after}");
+            assert!(after <= before && before < 0.0, "{before} to {after}");
         }
     }
 }

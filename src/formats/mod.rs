@@ -1,18 +1,50 @@
-//! Files: bytes to arrays, one file a format, and back, in `write`; what readers share is here, in `lines` and in `table`.
+//! Files: bytes to arrays, one file a format, and back, in `write`; what readers share is here, in `input`, `text` and `table`.
 //!
 //! Bytes come from strangers. A reader returns a right result or a typed error that names the line or byte, never
 //! panics, and never reserves memory on the word of a header: only what the bytes that are really there can fill.
+//!
+//! [`read`] takes a file that is wholly in memory; [`Reading`] takes it in slices and gives the points in blocks, so that
+//! neither the file nor its points are in memory at once where the format allows that.
 
-mod lines;
+// A build with one feature's readers leaves parts unused of what they share.
+#![cfg_attr(
+    not(all(feature = "e57", feature = "files", feature = "las")),
+    allow(dead_code)
+)]
+
+mod detect;
+#[cfg(feature = "e57")]
+mod e57;
+#[cfg(feature = "files")]
+mod glb;
+mod input;
+#[cfg(feature = "las")]
+mod las;
+#[cfg(feature = "files")]
+mod lzf;
+#[cfg(feature = "files")]
+mod obj;
+#[cfg(feature = "files")]
+mod off;
+#[cfg(feature = "files")]
+mod pcd;
+#[cfg(feature = "files")]
 mod ply;
+mod reading;
+#[cfg(feature = "files")]
+mod stl;
 mod table;
+mod text;
 mod write;
+#[cfg(feature = "files")]
 mod xyz;
 
 use crate::cloud::{Attribute, Cloud};
 use crate::error::{Error, Result};
 use crate::pipeline::Surface;
-
+pub use detect::detect;
+pub use reading::{Reading, Summary};
+pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
 /// A file format that is read.
@@ -22,17 +54,55 @@ pub enum Format {
     Ply,
     /// Rows of numbers as text: XYZ, TXT, PTS, CSV, ASC.
     Xyz,
+    /// PCD, the Point Cloud Library's: ascii, binary, compressed.
+    Pcd,
+    /// Wavefront OBJ: its vertices.
+    Obj,
+    /// OFF, the object file format of Geomview: its vertices.
+    Off,
+    /// STL, ascii and binary: its vertices, each once.
+    Stl,
+    /// Binary glTF: the vertices of its scene.
+    Glb,
+    /// ASPRS LAS 1.0 to 1.4 and LAZ, its compressed form.
+    Las,
+    /// ASTM E2807.
+    E57,
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: [Format; 2] = [Format::Ply, Format::Xyz];
+    /// All formats that are read.
+    pub const ALL: [Format; 9] = [
+        Format::Ply,
+        Format::Xyz,
+        Format::Pcd,
+        Format::Obj,
+        Format::Off,
+        Format::Stl,
+        Format::Glb,
+        Format::Las,
+        Format::E57,
+    ];
+    /// Those that are written, too, and read back to the same bits.
+    pub const WRITTEN: [Format; 2] = [Format::Ply, Format::Xyz];
 
     /// Lower-case name, as `format` in the JS interface: `ply`, `xyz`.
     pub fn name(self) -> &'static str {
+        self.extensions()[0]
+    }
+
+    /// Its name in messages.
+    pub fn title(self) -> &'static str {
         match self {
-            Format::Ply => "ply",
-            Format::Xyz => "xyz",
+            Format::Ply => "PLY",
+            Format::Xyz => "XYZ",
+            Format::Pcd => "PCD",
+            Format::Obj => "OBJ",
+            Format::Off => "OFF",
+            Format::Stl => "STL",
+            Format::Glb => "GLB",
+            Format::Las => "LAS",
+            Format::E57 => "E57",
         }
     }
 
@@ -41,6 +111,13 @@ impl Format {
         match self {
             Format::Ply => &["ply"],
             Format::Xyz => &["xyz", "txt", "pts", "csv", "asc", "xyzn", "xyzrgb"],
+            Format::Pcd => &["pcd"],
+            Format::Obj => &["obj"],
+            Format::Off => &["off", "coff", "noff", "cnoff"],
+            Format::Stl => &["stl"],
+            Format::Glb => &["glb"],
+            Format::Las => &["las", "laz"],
+            Format::E57 => &["e57"],
         }
     }
 
@@ -208,66 +285,10 @@ impl RawCloud {
     }
 }
 
-/// The format of a file: by its content where that tells, else by its name.
-///
-/// # Errors
-/// [`Error::UnknownFormat`], which says what the content looks like.
-pub fn detect(bytes: &[u8], name: Option<&str>) -> Result<Format> {
-    if ply::looks_like(bytes) {
-        return Ok(Format::Ply);
-    }
-    if let Some(other) = known_but_not_read(bytes) {
-        return Err(unknown(other));
-    }
-    if xyz::looks_like(bytes) {
-        return Ok(Format::Xyz);
-    }
-    name.and_then(Format::from_name).ok_or_else(|| {
-        let start = lines::quote(&bytes[..bytes.len().min(16)]);
-        unknown(&format!("content that starts with {start}"))
-    })
-}
-
 /// Reads a file that is wholly in memory.
 ///
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    match format {
-        Format::Ply => ply::read(bytes),
-        Format::Xyz => xyz::read(bytes),
-    }
-}
-
-/// The name of a format that is recognised by its first bytes but has no reader here.
-fn known_but_not_read(bytes: &[u8]) -> Option<&'static str> {
-    const SIGNATURES: [(&[u8], &str); 13] = [
-        (b"LASF", "a LAS or LAZ file"),
-        (b"# .PCD", "a PCD file"),
-        (b"VERSION .7", "a PCD file"),
-        (b"VERSION 0.7", "a PCD file"),
-        (b"ASTM-E57", "an E57 file"),
-        (b"glTF", "a binary glTF file"),
-        (b"solid", "an STL file"),
-        (b"OFF", "an OFF file"),
-        (b"COFF", "an OFF file"),
-        (b"PK\x03\x04", "a ZIP archive"),
-        (b"\x1f\x8b", "a gzip archive"),
-        (
-            b"version https://git-lfs",
-            "a Git LFS pointer, not the file itself",
-        ),
-        (b"<", "an XML or HTML document"),
-    ];
-    SIGNATURES
-        .iter()
-        .find(|(start, _)| bytes.starts_with(start))
-        .map(|(_, name)| *name)
-}
-
-fn unknown(found: &str) -> Error {
-    Error::UnknownFormat {
-        expected: "PLY, or rows of numbers as text (XYZ, TXT, PTS, CSV)".into(),
-        found: found.into(),
-    }
+    Reading::new(Some(format), None, bytes.len() as u64).whole(bytes)
 }

@@ -10,202 +10,240 @@
 
 mod header;
 
-use super::RawCloud;
-use super::lines::{Lines, number, quote};
-use super::table::{Columns, Table};
-use crate::error::{Error, Result};
-use header::{Element, Encoding, Header, Property, Scalar, bad_line};
+use super::input::Input;
+use super::reading::{Parser, Step};
+use super::table::Table;
+use super::text::{number, words};
+use crate::error::Result;
+use header::{Element, Encoding, Header, HeaderLines, Property};
 
 /// Whether the content starts as a PLY file does.
-pub(super) fn looks_like(bytes: &[u8]) -> bool {
-    let first = Lines::new(bytes, 0, 0).next().unwrap_or_default();
+pub(super) fn looks_like(head: &[u8]) -> bool {
+    let first = head
+        .split(|&b| b == b'\n' || b == b'\r')
+        .next()
+        .unwrap_or_default();
     first.trim_ascii() == b"ply"
 }
 
 /// Reads the points.
-pub(super) fn read(bytes: &[u8]) -> Result<RawCloud> {
-    let header = Header::parse(bytes)?;
-    let (index, columns) = header.points()?;
-    let (before, points) = (&header.elements[..index], &header.elements[index]);
-    let mut cloud = match header.encoding {
-        Encoding::Ascii => {
-            let mut rows = AsciiRows {
-                lines: Lines::new(bytes, header.end, header.lines),
-            };
-            before.iter().try_for_each(|element| rows.skip(element))?;
-            // A row of text has at least a digit and a separator for each value.
-            let most = (bytes.len() - rows.lines.at) / (2 * points.properties.len()) + 1;
-            collect(points, columns, most, |row| rows.read(points, row))?
+#[derive(Default)]
+pub(super) struct Ply {
+    header: HeaderLines,
+    rows: Option<Rows>,
+}
+
+impl Parser for Ply {
+    fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
+        let rows = match &mut self.rows {
+            Some(rows) => rows,
+            None => {
+                let Some(header) = self.header.read(input)? else {
+                    return Ok(Step::More);
+                };
+                let (points, columns) = header.points(input)?;
+                let most = header.most_rows(points, input);
+                *table = Some(Table::new(columns, Some(most)));
+                self.rows.insert(Rows {
+                    header,
+                    points,
+                    element: 0,
+                    row: 0,
+                    skipped: 0,
+                    values: Vec::new(),
+                })
+            }
+        };
+        match table {
+            Some(table) => rows.read(input, table),
+            None => Ok(Step::Done),
         }
-        encoding => {
-            let big_endian = encoding == Encoding::BigEndian;
-            let mut rows = BinaryRows {
-                bytes,
-                at: header.end,
-                big_endian,
-            };
-            before.iter().try_for_each(|element| rows.skip(element))?;
-            let most = (bytes.len() - rows.at) / points.row_size().0;
-            collect(points, columns, most, |row| rows.read(points, row))?
+    }
+
+    fn faces(&self) -> u64 {
+        let elements = self.rows.iter().flat_map(|rows| &rows.header.elements);
+        elements
+            .filter(|element| element.name == "face")
+            .map(|face| face.rows)
+            .next()
+            .unwrap_or(0)
+    }
+}
+
+/// The rows of the elements up to the points.
+struct Rows {
+    header: Header,
+    /// Which element the points are.
+    points: usize,
+    /// The element whose rows come next, and how many of its rows, or of its bytes, have been.
+    element: usize,
+    row: u64,
+    skipped: u64,
+    values: Vec<f64>,
+}
+
+impl Rows {
+    /// Reads what is at hand.
+    fn read(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        while self.element <= self.points {
+            let element = &self.header.elements[self.element];
+            let points = self.element == self.points;
+            if points {
+                self.row += read_rows(
+                    &self.header,
+                    element,
+                    self.row,
+                    &mut self.values,
+                    input,
+                    |row| table.push(row),
+                )?;
+            } else if let Some(size) = element.fixed_size(self.header.encoding) {
+                let total = size.saturating_mul(element.rows);
+                self.skipped += input.skip(total - self.skipped);
+                if self.skipped < total {
+                    return if input.last {
+                        Err(no_rows(input, total - self.skipped, element))
+                    } else {
+                        Ok(Step::More)
+                    };
+                }
+                self.row = element.rows;
+            } else {
+                self.row += read_rows(
+                    &self.header,
+                    element,
+                    self.row,
+                    &mut self.values,
+                    input,
+                    |_| (),
+                )?;
+            }
+            if self.row < element.rows {
+                return Ok(Step::More);
+            }
+            (self.element, self.row, self.skipped) = (self.element + 1, 0, 0);
+        }
+        Ok(Step::Done)
+    }
+}
+
+/// Reads rows of an element, of which `read` have been; how many they were. All, where nothing follows.
+fn read_rows(
+    header: &Header,
+    element: &Element,
+    read: u64,
+    values: &mut Vec<f64>,
+    input: &mut Input,
+    mut row: impl FnMut(&[f64]),
+) -> Result<u64> {
+    if element.properties.is_empty() {
+        return Ok(element.rows);
+    }
+    let mut count = 0;
+    while read + count < element.rows {
+        values.clear();
+        let whole = match header.encoding {
+            Encoding::Ascii => read_text_row(element, input, values)?,
+            encoding => read_binary_row(element, encoding == Encoding::BigEndian, input, values)?,
+        };
+        if !whole {
+            break;
+        }
+        row(values);
+        count += 1;
+    }
+    Ok(count)
+}
+
+/// A line that is not blank: its values without its lists. `false` where it is not at hand.
+fn read_text_row(element: &Element, input: &mut Input, row: &mut Vec<f64>) -> Result<bool> {
+    let line = loop {
+        match input.line()? {
+            Some(line) if line.trim_ascii().is_empty() => {}
+            Some(line) => break line,
+            None if input.last => return Err(input.no_line(&rows_of(element))),
+            None => return Ok(false),
         }
     };
-    let is_face = |element: &&Element| element.name == "face";
-    cloud.faces = header
-        .elements
-        .iter()
-        .find(is_face)
-        .map_or(0, |face| face.rows);
-    Ok(cloud)
-}
-
-/// All rows of the points; `most` is how many the bytes can hold.
-fn collect(
-    points: &Element,
-    columns: Columns,
-    most: usize,
-    mut read_row: impl FnMut(&mut Vec<f64>) -> Result<()>,
-) -> Result<RawCloud> {
-    let rows = usize::try_from(points.rows).unwrap_or(usize::MAX).min(most);
-    let mut table = Table::new(columns, rows);
-    let mut row = Vec::new();
-    for _ in 0..points.rows {
-        row.clear();
-        read_row(&mut row)?;
-        table.push(&row);
-    }
-    Ok(table.finish())
-}
-
-/// Rows as text, one a line.
-struct AsciiRows<'a> {
-    lines: Lines<'a>,
-}
-
-impl<'a> AsciiRows<'a> {
-    /// The next line that is not blank.
-    fn line(&mut self, element: &Element) -> Result<&'a [u8]> {
-        let is_row = |line: &&[u8]| !line.trim_ascii().is_empty();
-        self.lines.find(is_row).ok_or_else(|| Error::BadFile {
-            format: "PLY",
-            place: "line",
-            at: self.lines.number + 1,
-            expected: format!(
-                "one of {} rows of element {}",
-                element.rows,
-                quote(element.name.as_bytes())
-            ),
-            found: "the end of the file".into(),
-        })
-    }
-
-    fn skip(&mut self, element: &Element) -> Result<()> {
-        if element.properties.is_empty() {
-            return Ok(());
-        }
-        (0..element.rows).try_for_each(|_| self.line(element).map(|_| ()))
-    }
-
-    /// The values of a row without its lists.
-    fn read(&mut self, element: &Element, row: &mut Vec<f64>) -> Result<()> {
-        let line = self.line(element)?;
-        let at = self.lines.number;
-        let mut tokens = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|token| !token.is_empty());
-        let mut next = || {
-            let token = tokens.next().ok_or_else(|| {
-                let expected = format!("{} values", element.properties.len());
-                bad_line(at, &expected, line)
-            })?;
-            number(token).ok_or_else(|| bad_line(at, "a number", token))
-        };
-        for property in &element.properties {
-            match property {
-                Property::One { .. } => row.push(next()?),
-                Property::List { .. } => {
-                    let count = next()?;
-                    let items =
-                        list_length(count).ok_or_else(|| bad_line(at, "a list's length", line))?;
-                    (0..items).try_for_each(|_| next().map(|_| ()))?;
-                }
+    let mut tokens = words(line);
+    let mut next = || {
+        let token = tokens.next().ok_or_else(|| {
+            let expected = format!("{} values", element.properties.len());
+            input.bad_line(&expected, line)
+        })?;
+        number(token).ok_or_else(|| input.bad_line("a number", token))
+    };
+    for property in &element.properties {
+        match property {
+            Property::One { .. } => row.push(next()?),
+            Property::List { .. } => {
+                let items =
+                    list_length(next()?).ok_or_else(|| input.bad_line("a list's length", line))?;
+                (0..items).try_for_each(|_| next().map(|_| ()))?;
             }
         }
-        match tokens.next() {
-            None => Ok(()),
-            Some(token) => Err(bad_line(at, "the end of the line", token)),
-        }
+    }
+    match tokens.next() {
+        None => Ok(true),
+        Some(token) => Err(input.bad_line("the end of the line", token)),
     }
 }
 
-/// Binary rows.
-struct BinaryRows<'a> {
-    bytes: &'a [u8],
-    at: usize,
+/// A binary row: its values without its lists. `false` where it is not at hand.
+fn read_binary_row(
+    element: &Element,
     big_endian: bool,
-}
-
-impl<'a> BinaryRows<'a> {
-    /// The next `size` bytes.
-    fn take(&mut self, size: usize, element: &Element) -> Result<&'a [u8]> {
-        let rest = &self.bytes[self.at..];
-        if size > rest.len() {
-            return Err(Error::BadFile {
-                format: "PLY",
-                place: "byte",
-                at: self.at as u64,
-                expected: format!(
-                    "{size} more bytes of {} rows of element {}",
-                    element.rows,
-                    quote(element.name.as_bytes())
-                ),
-                found: format!("{} bytes, then the end of the file", rest.len()),
-            });
-        }
-        self.at += size;
-        Ok(&rest[..size])
-    }
-
-    fn value(&mut self, scalar: Scalar, element: &Element) -> Result<f64> {
-        let big_endian = self.big_endian;
-        Ok(scalar.value(self.take(scalar.size(), element)?, big_endian))
-    }
-
-    fn skip(&mut self, element: &Element) -> Result<()> {
-        let (size, fixed) = element.row_size();
-        if fixed {
-            let total = (size as u64).saturating_mul(element.rows);
-            self.take(usize::try_from(total).unwrap_or(usize::MAX), element)?;
-            return Ok(());
-        }
-        let mut row = Vec::new();
-        for _ in 0..element.rows {
-            row.clear();
-            self.read(element, &mut row)?;
-        }
-        Ok(())
-    }
-
-    /// The values of a row without its lists.
-    fn read(&mut self, element: &Element, row: &mut Vec<f64>) -> Result<()> {
-        for property in &element.properties {
-            match property {
-                Property::One { scalar, .. } => row.push(self.value(*scalar, element)?),
-                Property::List { count, item } => {
-                    let at = self.at;
-                    let length = self.value(*count, element)?;
-                    let items = list_length(length).ok_or_else(|| Error::BadFile {
-                        format: "PLY",
-                        place: "byte",
-                        at: at as u64,
-                        expected: "a list's length".into(),
-                        found: length.to_string(),
-                    })?;
-                    self.take(items.saturating_mul(item.size()), element)?;
-                }
+    input: &mut Input,
+    row: &mut Vec<f64>,
+) -> Result<bool> {
+    let here = input.rest();
+    let mut at = 0;
+    for property in &element.properties {
+        let (Property::One { scalar, .. } | Property::List { count: scalar, .. }) = property;
+        let Some(bytes) = here.get(at..at + scalar.size()) else {
+            return missing(input, (at + scalar.size()) as u64, element);
+        };
+        let value = scalar.value(bytes, big_endian);
+        match property {
+            Property::One { .. } => row.push(value),
+            Property::List { item, .. } => {
+                let items = list_length(value).ok_or_else(|| {
+                    input.bad_byte(
+                        input.place.byte + at as u64,
+                        "a list's length",
+                        value.to_string(),
+                    )
+                })?;
+                at = at.saturating_add(items.saturating_mul(item.size()));
             }
         }
-        Ok(())
+        at = at.saturating_add(scalar.size());
+        if at > here.len() {
+            return missing(input, at as u64, element);
+        }
     }
+    Ok(input.take(at).is_some())
+}
+
+/// A row of `length` bytes is not at hand.
+fn missing(input: &Input, length: u64, element: &Element) -> Result<bool> {
+    // What a list says is longer than the file is never waited for.
+    if input.last || length > input.left() {
+        return Err(no_rows(input, length, element));
+    }
+    Ok(false)
+}
+
+fn no_rows(input: &Input, length: u64, element: &Element) -> crate::Error {
+    input.no_bytes(length, &rows_of(element))
+}
+
+fn rows_of(element: &Element) -> String {
+    format!(
+        "{} rows of element {}",
+        element.rows,
+        super::text::quote(element.name.as_bytes())
+    )
 }
 
 /// A list's length from its value in the file.

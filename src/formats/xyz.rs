@@ -2,7 +2,7 @@
 //!
 //! - **Rows**: one point a line; values are separated by blanks, tabs, commas or semicolons. Where a line has semicolons,
 //!   commas are decimal commas. All rows have the same number of values, three at least. Blank lines are passed over,
-//!   and lines that start with `#` or `//`.
+//!   and lines that start with `#`, `//`, `%` or `!`.
 //! - **Counts**: a line with one whole number is a count of rows (PTS; a file may hold several scans). Fewer rows than the
 //!   counts say mean that the file is cut off, which is an error; more are read.
 //! - **Names**: a line before the first row whose first value is not a number names the columns; so does a comment
@@ -13,19 +13,21 @@
 //!   seven columns fit, intensity comes before the colours in a file with a count (PTS) and after them in others. Columns
 //!   that fit nothing become attributes `column4`, `column5` ….
 
-use super::lines::{Lines, number, quote};
-use super::table::{Columns, Table};
-use super::{Positions, RawCloud};
-use crate::error::{Error, Result};
+use super::input::Input;
+use super::reading::{Parser, Step};
+use super::table::{ColorRange, Columns, Precision, Table};
+use super::text::number;
+use crate::error::Result;
 
 /// Rows that decide what columns without names are.
 const LOOK_AHEAD: usize = 1000;
 
 /// Whether the first line that says something is a row, a count, or names x, y and z.
-pub(super) fn looks_like(bytes: &[u8]) -> bool {
+pub(super) fn looks_like(head: &[u8]) -> bool {
     const MOST_LINES: usize = 100;
     let mut row = Vec::new();
-    Lines::new(without_mark(bytes), 0, 0)
+    without_mark(head)
+        .split(|&b| b == b'\n' || b == b'\r')
         .take(MOST_LINES)
         .map(|line| match parse(line, &mut row) {
             Line::Nothing => None,
@@ -36,24 +38,6 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
         })
         .find_map(|answer| answer)
         .unwrap_or(false)
-}
-
-/// Reads the points.
-pub(super) fn read(bytes: &[u8]) -> Result<RawCloud> {
-    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(Error::UnsupportedFile {
-            format: "XYZ",
-            expected: "UTF-8 or ASCII text".into(),
-            found: "UTF-16 text".into(),
-        });
-    }
-    let mut reader = Reader::default();
-    let mut row = Vec::new();
-    let mut lines = Lines::new(without_mark(bytes), 0, 0);
-    while let Some(line) = lines.next() {
-        reader.line(line, lines.number, &mut row)?;
-    }
-    reader.finish(lines.number)
 }
 
 /// Without the byte order mark of UTF-8.
@@ -79,8 +63,8 @@ enum Line<'a> {
 fn parse<'a>(line: &'a [u8], row: &mut Vec<f64>) -> Line<'a> {
     row.clear();
     let line = line.trim_ascii();
-    if line.starts_with(b"#") || line.starts_with(b"//") {
-        let marks = line.iter().take_while(|b| b"#/".contains(b)).count();
+    if line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark)) {
+        let marks = line.iter().take_while(|b| b"#/%!".contains(b)).count();
         let names = names(&line[marks..]);
         return if Columns::from_names(&names).is_some() {
             Line::Names {
@@ -144,9 +128,9 @@ fn names(line: &[u8]) -> Vec<String> {
     values(line.trim_ascii()).map(name).collect()
 }
 
-/// What was read so far.
+/// Reads the points.
 #[derive(Default)]
-struct Reader {
+pub(super) struct Xyz {
     names: Option<Vec<String>>,
     names_in_comment: bool,
     /// Sum of the counts in the file.
@@ -156,11 +140,42 @@ struct Reader {
     width: usize,
     /// The first rows, one after the other, until the columns are known.
     ahead: Vec<f64>,
-    table: Option<Table>,
+    /// Values of the line at hand.
+    values: Vec<f64>,
 }
 
-impl Reader {
-    fn line(&mut self, line: &[u8], at: u64, row: &mut Vec<f64>) -> Result<()> {
+impl Parser for Xyz {
+    fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
+        if input.place.byte == 0 {
+            if input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]) {
+                return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
+            }
+            if input.rest().len() < 3 && !input.last {
+                return Ok(Step::More);
+            }
+            input.skip((input.rest().len() - without_mark(input.rest()).len()) as u64);
+        }
+        let mut values = std::mem::take(&mut self.values);
+        while let Some(line) = input.line()? {
+            self.line(line, &mut values, input, table)?;
+        }
+        self.values = values;
+        if !input.last {
+            return Ok(Step::More);
+        }
+        self.finish(input, table)?;
+        Ok(Step::Done)
+    }
+}
+
+impl Xyz {
+    fn line(
+        &mut self,
+        line: &[u8],
+        row: &mut Vec<f64>,
+        input: &Input,
+        table: &mut Option<Table>,
+    ) -> Result<()> {
         match parse(line, row) {
             Line::Nothing => Ok(()),
             Line::Count(count) => {
@@ -168,7 +183,7 @@ impl Reader {
                 Ok(())
             }
             Line::Names { comment: true, .. } if self.rows > 0 => Ok(()),
-            Line::Names { .. } if self.rows > 0 => Err(bad(at, "numbers", line)),
+            Line::Names { .. } if self.rows > 0 => Err(input.bad_line("numbers", line)),
             Line::Names { names, comment } => {
                 let known = Columns::from_names(&names).is_some();
                 let mut sorted: Vec<String> =
@@ -183,57 +198,63 @@ impl Reader {
                     Ok(())
                 } else {
                     let expected = "numbers, or different column names with x, y and z";
-                    Err(bad(at, expected, line))
+                    Err(input.bad_line(expected, line))
                 }
             }
-            Line::Bad(value) => Err(bad(at, "a number", value)),
-            Line::Row => self.row(line, at, row),
+            Line::Bad(value) => Err(input.bad_line("a number", value)),
+            Line::Row => self.row(line, row, input, table),
         }
     }
 
-    fn row(&mut self, line: &[u8], at: u64, row: &[f64]) -> Result<()> {
+    fn row(
+        &mut self,
+        line: &[u8],
+        row: &[f64],
+        input: &Input,
+        table: &mut Option<Table>,
+    ) -> Result<()> {
         if self.rows == 0 {
             self.width = row.len();
             let names = self.names.as_ref().map_or(self.width, Vec::len);
             if names != self.width && self.names_in_comment {
                 self.names = None;
             } else if names != self.width {
-                return Err(bad(at, &format!("{names} values, one for each name"), line));
+                return Err(input.bad_line(&format!("{names} values, one for each name"), line));
             }
         }
         if row.len() < 3 || row.len() != self.width {
-            return Err(bad(at, &format!("{} values", self.width.max(3)), line));
+            return Err(input.bad_line(&format!("{} values", self.width.max(3)), line));
         }
         self.rows += 1;
-        match &mut self.table {
+        match table {
             Some(table) => table.push(row),
             None => {
                 self.ahead.extend(row);
                 if self.ahead.len() == LOOK_AHEAD * self.width {
-                    self.start_table();
+                    *table = Some(self.start_table());
                 }
             }
         }
         Ok(())
     }
 
-    /// Decides what the columns are and moves the first rows into the table.
-    fn start_table(&mut self) -> &mut Table {
+    /// Decides what the columns are and moves the first rows into a table.
+    fn start_table(&mut self) -> Table {
         let columns = match &self.names {
             Some(names) => Columns::from_names(names),
             None => None,
         };
         let columns =
             columns.unwrap_or_else(|| guess(&self.ahead, self.width, self.promised.is_some()));
-        let mut table = Table::new(columns, self.ahead.len() / self.width.max(1));
+        let mut table = Table::new(columns, None);
         for row in self.ahead.chunks_exact(self.width.max(1)) {
             table.push(row);
         }
         self.ahead = Vec::new();
-        self.table.insert(table)
+        table
     }
 
-    fn finish(mut self, last_line: u64) -> Result<RawCloud> {
+    fn finish(&mut self, input: &Input, table: &mut Option<Table>) -> Result<()> {
         let promised = self.promised.unwrap_or(0);
         let says_nothing = self.promised.is_none() && self.names.is_none();
         if self.rows < promised || (self.rows == 0 && says_nothing) {
@@ -242,21 +263,13 @@ impl Reader {
             } else {
                 format!("{promised} rows")
             };
-            return Err(Error::BadFile {
-                format: "XYZ",
-                place: "line",
-                at: last_line,
-                expected,
-                found: format!("the end of the file after {} rows", self.rows),
-            });
+            let found = format!("the end of the file after {} rows", self.rows);
+            return Err(input.bad_at_line(input.place.line, &expected, found));
         }
-        if self.table.is_none() {
-            self.start_table();
+        if table.is_none() {
+            *table = Some(self.start_table());
         }
-        Ok(self
-            .table
-            .map(Table::finish)
-            .unwrap_or_else(|| RawCloud::new(Positions::F32(Vec::new()))))
+        Ok(())
     }
 }
 
@@ -343,21 +356,7 @@ fn guess(values: &[f64], width: usize, counted: bool) -> Columns {
         normal: None,
         color: None,
         scalars: Vec::new(),
-        color_is_bytes: false,
+        colors: ColorRange::Guess,
+        precision: Precision::AsNeeded,
     })
-}
-
-fn bad(at: u64, expected: &str, found: &[u8]) -> Error {
-    let found = if found.is_empty() {
-        "nothing".into()
-    } else {
-        quote(found)
-    };
-    Error::BadFile {
-        format: "XYZ",
-        place: "line",
-        at,
-        expected: expected.into(),
-        found,
-    }
 }

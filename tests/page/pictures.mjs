@@ -113,11 +113,14 @@ class Mask {
   }
 }
 
-/** Which pixels are not background. The background is the same all along a row: what is at its left end. */
-export function silhouette(png) {
+/**
+ * Which pixels are not background. The background is the same all along a row: what is at its left end.
+ * @param {Buffer} png
+ * @param {number} [corner] so many rows are left out above and below, where the picture's corners are round
+ */
+export function silhouette(png, corner = 24) {
   const { width, height, channels, data } = decodePng(png);
   const mask = new Mask(width, height);
-  const corner = 24; // the picture's corners are round
   for (let y = corner; y < height - corner; y++) {
     const background = (y * width + 3) * channels;
     for (let x = 0; x < width; x++) {

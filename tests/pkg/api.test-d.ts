@@ -2,14 +2,24 @@
 
 import {
   DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
-  type CloudInfo, type Engine, type OutputFormat, type PointCloud, type ReducedCloud, type Stage, type SurfaceMesh,
+  type CloudInfo, type Engine, type FileCloud, type Format, type OutputFormat, type PointCloud, type ReducedCloud, type Stage,
+  type SurfaceMesh,
 } from 'pointweave';
 import { compress } from 'pointweave/meshopt';
 import type * as browser from '../../pkg/index.js';
 import type * as node from '../../pkg/index.node.js';
+import type * as directBrowser from '../../pkg/direct.js';
+import type * as directNode from '../../pkg/direct.node.js';
+import { load, type Core } from 'pointweave/core';
 
 type Declared = typeof import('pointweave');
 type Same<A, B> = [keyof A, keyof B] extends [keyof B, keyof A] ? true : never;
+
+type Direct = typeof import('pointweave/core');
+export const direct: [Same<typeof directBrowser, Direct>, Same<typeof directNode, Direct>] = [true, true];
+export function conformDirect(web: typeof directBrowser, server: typeof directNode): [Pick<Direct, 'load' | 'DEFAULTS'>, Pick<Direct, 'load' | 'DEFAULTS'>] {
+  return [web, server];
+}
 
 /** Both entries export exactly what is declared, with the declared types. */
 export const exported: [Same<typeof browser, Declared>, Same<typeof node, Declared>] = [true, true];
@@ -26,17 +36,27 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
+  const scan: FileCloud = await read(file, { format: 'las', signal, onProgress: ({ stage }) => console.log(stage) });
+  const format: Format = scan.file.format;
   const bytes: Uint8Array = await write(mesh, { format: 'ply', encoding: 'ascii' });
   const glb: Uint8Array = await write(reduced, { format: 'glb' satisfies OutputFormat, quantize: true, meshopt: compress });
-  const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/') });
+  const engine: Engine = await createEngine({ threads: 'auto', worker: true, wasmUrl: new URL('https://example.org/wasm/'), workerUrl: '/worker.js', idleMs: Infinity });
   const duck: PointCloud<Float32Array> = await engine.sample('duck', { count: 1000, seed: 1 });
   await engine.reconstruct(duck, { onProgress: ({ stage, overall }) => console.log(stage satisfies Stage, overall.toFixed()) });
   const share: number | undefined = DEFAULTS.reconstruct.accuracy;
 
+  const core: Core = await load({ wasmUrl: '/wasm/' });
+  const now: SurfaceMesh<Float64Array> = core.reconstruct(core.reduce(exact), { reduce: false });
+  // @ts-expect-error threads need an engine
+  await load({ threads: 2 });
+  // @ts-expect-error a file has to be waited for
+  core.read(file);
   // @ts-expect-error one target only: a string is none
   await reduce(cloud, { target: '0.3' });
   // @ts-expect-error no such option
   await reduce(cloud, { ratio: 0.3 });
+  // @ts-expect-error no such format
+  await read(file, { format: 'dae' });
   // @ts-expect-error no such way to carry an attribute
   await reduce(cloud, { attributes: { label: 'median' } });
   // @ts-expect-error a plain array holds no positions
@@ -48,5 +68,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers];
+  return [now, info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers, format];
 }

@@ -30,7 +30,10 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'applic
 const HTML = `<!doctype html><title>test</title><link rel="icon" href="data:,">
 <script type="importmap" nonce="map">{ "imports": { "pointweave": "/pointweave/index.js" } }</script>`;
 
-const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+/** Of a server whose files other origins may have. */
+export const OPEN = { 'Access-Control-Allow-Origin': '*', 'Cross-Origin-Resource-Policy': 'cross-origin' };
+
+export const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
 const STRICT = {
   'Content-Security-Policy': "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-map'; worker-src 'self'; connect-src 'self'; img-src data:",
 };
@@ -39,14 +42,27 @@ const STRICT = {
  * A page in Chromium with `pointweave` in reach of `import`. Browser and server end with the test.
  * @param {import('node:test').TestContext} t
  */
-export async function openPage(t, { isolated = true, strict = false } = {}) {
-  const executablePath = found(CHROMIUM, 'Chromium', 'CHROMIUM');
+export async function openPage(t, { isolated = true, strict = false, prepare = async (_page) => {}, flags = [] } = {}) {
   const address = await serve(t, { ...(isolated && ISOLATED), ...(strict && STRICT) }, {});
-  const browser = await chromium.launch({ executablePath, args: FLAGS });
-  t.after(() => browser.close());
+  const page = await newPage(t, flags);
+  await prepare(page);
+  await page.goto(address);
+  return page;
+}
+
+/** A Chromium that ends with the test, or the file of tests. */
+export async function openBrowser({ after }, flags = []) {
+  const executablePath = found(CHROMIUM, 'Chromium', 'CHROMIUM');
+  const browser = await chromium.launch({ executablePath, args: [...FLAGS, ...flags] });
+  after(() => browser.close());
+  return browser;
+}
+
+/** An empty page in a Chromium of its own, which ends with the test. */
+export async function newPage(t, flags = []) {
+  const browser = await openBrowser({ after: (end) => t.after(end) }, flags);
   const page = await browser.newPage();
   page.on('pageerror', (error) => t.diagnostic(`page: ${error}`));
-  await page.goto(address);
   return page;
 }
 
@@ -94,25 +110,48 @@ function found(candidates, name, variable) {
 }
 
 /**
- * Serves the package, a bare page and what `routes` gives. Ends with the test.
+ * Serves the package as `/pointweave/`, a bare page and what `routes` gives. Ends with the test.
  * @param {import('node:test').TestContext} t
  * @param {Record<string, string>} headers of every response
  * @param {Record<string, (request: import('node:http').IncomingMessage) => string | Promise<string>>} routes
  * @returns {Promise<string>} the address
  */
-async function serve(t, headers, routes) {
+export function serve(t, headers, routes) {
+  return listen(t, headers, (pathname, request) => {
+    if (pathname in routes) return routes[pathname](request);
+    if (pathname === '/') return HTML;
+    return pathname.startsWith('/pointweave/') && fileIn(PACKAGE, pathname.slice('/pointweave'.length));
+  });
+}
+
+/**
+ * Serves folders, the first that has a file. Ends with the test.
+ * @param {import('node:test').TestContext} t
+ * @param {Record<string, string>} headers of every response
+ * @param {URL[]} folders
+ * @returns {Promise<string>} the address
+ */
+export function serveFolders(t, headers, folders) {
+  return listen(t, headers, async (pathname) => {
+    for (const folder of folders) {
+      const body = await fileIn(folder, pathname.replace(/\/$/, '/index.html'));
+      if (body) return body;
+    }
+  });
+}
+
+/** @param {URL} folder @param {string} pathname of a request, from its '/' on */
+function fileIn(folder, pathname) {
+  return readFile(new URL(`.${pathname}`, folder)).catch(() => null);
+}
+
+async function listen(t, headers, answer) {
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
     const body = await answer(pathname, request);
-    const type = pathname === '/' ? 'text/html' : TYPES[extname(pathname)] ?? 'application/octet-stream';
-    response.writeHead(body ? 200 : 404, { ...headers, 'Content-Type': type }).end(body ?? '');
+    const type = pathname.endsWith('/') ? 'text/html' : TYPES[extname(pathname)] ?? 'application/octet-stream';
+    response.writeHead(body ? 200 : 404, { ...headers, 'Content-Type': type }).end(body || '');
   });
-  const answer = (pathname, request) => {
-    if (pathname === '/') return HTML;
-    if (pathname in routes) return routes[pathname](request);
-    const file = pathname.startsWith('/pointweave/') && new URL(`.${pathname.slice('/pointweave'.length)}`, PACKAGE);
-    return file && readFile(file).catch(() => null);
-  };
   await new Promise((ready) => server.listen(0, ready));
   t.after(() => server.closeAllConnections());
   t.after(() => server.close());

@@ -4,12 +4,14 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { platform } from '../../pkg/platform.node.js';
 import { workerHost } from '../../pkg/hosts.js';
+import { sharedMemory } from '../../pkg/memory.js';
 import { arraysOf, engineFor, sphere } from './support.mjs';
 
 /** The threads build with a pool of one, which an engine would not take. */
 async function poolOfOne(t) {
   const module = await platform.compile('threads', undefined);
-  const host = await workerHost(platform.startWorker, { build: 'threads', threads: 1, module });
+  const { memory } = sharedMemory();
+  const host = await workerHost(platform.startWorker, { build: 'threads', threads: 1, module, memory });
   t.after(() => host.end());
   const call = (name) => (cloud, options = {}) => host.run({ call: name, args: [structuredClone(cloud), options] }, {});
   return { reduce: call('reduce'), reconstruct: call('reconstruct') };

@@ -5,7 +5,10 @@ import { execFile } from 'node:child_process';
 import { availableParallelism } from 'node:os';
 import test from 'node:test';
 import { promisify } from 'node:util';
+import { createEngine } from 'pointweave';
 import { makeApi } from '../../pkg/api.js';
+import { workerHost } from '../../pkg/hosts.js';
+import { sharedMemory } from '../../pkg/memory.js';
 import { platform } from '../../pkg/platform.node.js';
 import { engineFor, rejection, sphere } from './support.mjs';
 
@@ -20,7 +23,7 @@ function counting(changes = {}) {
   const counted = {
     ...platform,
     compile: (...args) => (made.compiled++, platform.compile(...args)),
-    startWorker: () => (made.workers++, platform.startWorker()),
+    startWorker: (...args) => (made.workers++, platform.startWorker(...args)),
     ...changes,
   };
   return { made, api: makeApi(counted) };
@@ -60,15 +63,76 @@ test('threads that do not start leave the single-threaded build', async (t) => {
   assert.match(engine.reason, /threads build did not start: .*nowhere\.wasm/);
   assert.match((await engine.reduce(sphere())).report.reason, /did not start/);
 
+  let workers = 0;
+  const { api } = counting({ startWorker: () => platform.startWorker(++workers === 3 ? 'data:text/javascript,throw new Error("no room")' : undefined) });
+  const broken = await api.createEngine({ threads: 2 });
+  t.after(() => broken.dispose());
+  assert.match(broken.reason, /^the threads build did not start: the worker did not start: no room$/);
+  assert.deepEqual([broken.build, (await broken.reduce(sphere(500))).report.build], ['single', 'single']);
+});
+
+test('memory that cannot be shared, or not so much of it, is no end either', async (t) => {
+  const { Memory } = WebAssembly;
+  t.after(() => void (WebAssembly.Memory = Memory));
+  const refuse = (above) => {
+    WebAssembly.Memory = class extends Memory {
+      constructor(limits) {
+        if (limits.maximum > above / 65_536) throw new RangeError('could not allocate memory');
+        super(limits);
+      }
+    };
+  };
+  refuse(2 ** 30);
+  const limited = await engineFor(t, { threads: 2 });
+  assert.deepEqual([limited.build, limited.reason], ['threads', 'Node has threads; memory is limited to 1024 MiB here']);
+  assert.equal((await limited.reduce(sphere())).report.reason, limited.reason);
+  refuse(0);
+  const single = await engineFor(t, { threads: 2 });
+  assert.deepEqual([single.build, single.reason], ['single', 'the threads build did not start: could not allocate memory']);
+});
+
+test('a pool that does not come is not waited for for ever', async () => {
+  const stuck = () => {
+    const worker = platform.startWorker();
+    return { ...worker, post: (message, transfer) => message.request?.call !== 'lendThread' && worker.post(message, transfer) };
+  };
+  const module = await platform.compile('threads');
+  const { memory } = sharedMemory();
+  const error = await rejection(workerHost(stuck, { build: 'threads', threads: 2, module, memory, poolLimitMs: 500 }));
+  assert.match(error.message, /no pool within 0.5 s/);
+});
+
+test('workers without a call end, and the next call has fresh ones', async (t) => {
+  const ended = [];
   const { api } = counting({
     startWorker() {
       const worker = platform.startWorker();
-      return { ...worker, post: (message, transfer) => worker.post(message.request?.call === 'buildPool' ? { request: { call: 'buildPool', args: [-1] } } : message, transfer) };
+      return { ...worker, terminate: () => (ended.push(worker), worker.terminate()) };
     },
   });
-  const broken = await api.createEngine({ threads: 2 });
-  t.after(() => broken.dispose());
-  assert.equal(broken.build, 'single', 'a pool of 2^32-1 threads cannot be');
+  const engine = await api.createEngine({ threads: 2, idleMs: 50 });
+  t.after(() => engine.dispose());
+  const idle = async (count) => {
+    while (ended.length < count) await new Promise((resolve) => setTimeout(resolve, 10));
+  };
+  await idle(3);
+  assert.equal((await engine.reduce(large)).positions.length / 3, 33_333, 'not idle while it works, however long');
+  await idle(6);
+  const patient = await api.createEngine({ threads: 1, worker: true, idleMs: Infinity });
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  assert.equal(ended.length, 6);
+  await patient.dispose();
+  assert.equal(ended.length, 7);
+});
+
+test("the worker's script can lie elsewhere", async (t) => {
+  const mine = `data:text/javascript,import ${JSON.stringify(import.meta.resolve('pointweave/worker'))}`;
+  const engine = await engineFor(t, { threads: 2, workerUrl: mine });
+  assert.equal(engine.build, 'threads');
+  assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
+  const error = await rejection(createEngine({ threads: 1, worker: true, workerUrl: 'nowhere.js' }));
+  assert.equal(error.code, 'load-failed');
+  assert.match(error.message, /the worker did not start: .*nowhere\.js/);
 });
 
 test('the wasm files can lie elsewhere', async (t) => {

@@ -44,7 +44,8 @@ for (const worker of [false, true]) {
 
   test(`errors of files, ${worker ? 'with a worker' : 'in process'}`, async (t) => {
     const engine = await engineFor(t, { threads: 1, worker });
-    await rejects(engine.read(text('LASF and so on')), 'unknown-format', { found: 'a LAS or LAZ file' });
+    await rejects(engine.read(text('<html>and so on')), 'unknown-format', { found: 'an XML or HTML document' });
+    await rejects(engine.read(text('LASF and so on')), 'bad-file', { index: 0 });
     const header = 'ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n';
     const short = await rejects(engine.read(text(`${header}1 2 3\n`)), 'bad-file');
     assert.ok(short.index >= 8, `at line ${short.index}`);
@@ -66,10 +67,10 @@ test('arguments of the wrong kind are bad input', async () => {
   for (const data of [undefined, null, 'ply', [1, 2, 3]]) await rejects(read(data), 'bad-input');
 });
 
-test('bytes beyond what wasm can address run out of memory, and the next call works', async (t) => {
+test('points beyond what wasm can address run out of memory, and the next call works', async (t) => {
   const engine = await engineFor(t, { threads: 1 });
-  const huge = new Uint8Array(2 ** 31 + 5);
-  await rejects(engine.read(huge, { transfer: true, format: 'xyz' }), 'out-of-memory');
+  const positions = new Float32Array(2 ** 29 + 1);
+  await rejects(engine.inspect({ positions }, { transfer: true }), 'out-of-memory');
   assert.equal((await engine.reduce(sphere(500))).positions.length / 3, 167);
 });
 

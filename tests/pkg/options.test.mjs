@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
-import * as glue from '../../pkg/wasm/single/pointweave.js';
+import { loadGlue } from '../../pkg/glue.js';
 import { rejection, sphere } from './support.mjs';
 
 const cloud = sphere(500);
@@ -88,14 +88,17 @@ test('an attribute that the cloud does not have is named, with those that it has
 });
 
 test('undefined means not given', async () => {
-  const given = await reduce(cloud, { target: undefined, seed: undefined, signal: undefined });
+  const given = await reduce(cloud, { target: undefined, seed: undefined, signal: undefined   const nested = await reconstruct(cloud, { reduce: { target: { ratio: 0.5, count: undefined }, norm: undefined } });
+  assert.deepEqual(nested.positions, (await reconstruct(cloud, { reduce: { target: { ratio: 0.5 } } })).positions);
+});
   const bare = await reduce(cloud);
   assert.deepEqual(given.positions, bare.positions);
 });
 
 /** A wasm instance without the checks of the package in front. */
 async function bareWasm() {
-  await glue.default({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
+  const glue = await loadGlue('single');
+  await glue.instantiate({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
   return glue;
 }
 

@@ -1,37 +1,69 @@
-//! The two wasm builds: one code, with and without threads (DESIGN: "Two builds, one code").
+//! The wasm builds: the engine with and without threads (DESIGN: "Two builds, one code"), and the readers of
+//! files, in modules that are loaded when such a file comes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::glue;
 use crate::setup;
 use crate::shell::{Result, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
 
-/// One of the two wasm builds.
+/// One of the wasm builds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Build {
     /// One thread and no atomics: runs on every page.
     Single,
     /// A pool of workers over shared memory: needs a cross-origin isolated page, or Node.
     Threads,
+    /// The readers of files that are small, alone.
+    Files,
+    /// The reader of LAS and LAZ alone.
+    Las,
+    /// The reader of E57 alone.
+    E57,
 }
 
 impl Build {
-    pub const ALL: [Build; 2] = [Build::Single, Build::Threads];
+    pub const ALL: [Build; 5] = [
+        Build::Single,
+        Build::Threads,
+        Build::Files,
+        Build::Las,
+        Build::E57,
+    ];
+    /// Those with the whole engine.
+    pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Single => "single",
             Self::Threads => "threads",
+            Self::Files => "files",
+            Self::Las => "las",
+            Self::E57 => "e57",
         }
     }
 
-    /// Arguments for rustc. The two builds keep apart target folders, or each would undo the other.
+    /// Features of the crate.
+    fn features(self) -> &'static str {
+        match self {
+            Self::Single => "engine",
+            Self::Threads => "engine,threads",
+            Self::Files => "files",
+            Self::Las => "las",
+            Self::E57 => "e57",
+        }
+    }
+
+    /// Arguments for rustc. Builds with others keep apart target folders, or each would undo the other.
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single => strings(&["-Ctarget-feature=+simd128"]),
+            Self::Single | Self::Files | Self::Las | Self::E57 => {
+                strings(&["-Ctarget-feature=+simd128"])
+            }
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
                     "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
@@ -40,6 +72,8 @@ impl Build {
                     // Shared memory states its limit; this is all that wasm32 can address. Whoever
                     // makes the memory may choose less.
                     "-Clink-arg=--max-memory=4294967296",
+                    // Whoever makes it has to know this, too: `pkg/memory.js`.
+                    "-Clink-arg=--initial-memory=4194304",
                 ]);
                 // What wasm-bindgen needs to give every thread its own stack and statics.
                 for symbol in [
@@ -57,7 +91,12 @@ impl Build {
     }
 
     pub fn target_dir(self) -> PathBuf {
-        root().join("target").join(format!("wasm-{}", self.name()))
+        let threads = if self == Self::Threads {
+            "threads"
+        } else {
+            "single"
+        };
+        root().join("target").join(format!("wasm-{threads}"))
     }
 
     /// `cargo <action>` for this build, release profile.
@@ -80,9 +119,7 @@ impl Build {
             .env("RUSTC_BOOTSTRAP", "1")
             // The one way that keeps spaces and overrides whatever flags the environment has.
             .env("CARGO_ENCODED_RUSTFLAGS", self.rust_flags().join("\u{1f}"));
-        if self == Self::Threads {
-            cargo.args(["--features", "threads"]);
-        }
+        cargo.args(["--no-default-features", "--features", self.features()]);
         cargo
     }
 }
@@ -102,7 +139,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: pkg/wasm/single and pkg/wasm/threads.
+/// `cargo xtask build`: pkg/wasm/single, threads, files, las and e57.
 pub fn build() -> Result<()> {
     let toolchain = toolchain::wasm()?;
     let tools = setup::wasm_tools()?;
@@ -150,10 +187,12 @@ fn bind(tools: &Path, wasm: &Path, out: &Path) -> Result<()> {
     let mut bindgen = command(tools);
     bindgen
         .args(["bindgen", "--target", "web", "--remove-producers-section"])
+        .args(["--no-typescript", "--omit-default-module-path"])
         .arg("--out-dir")
         .arg(out)
         .arg(wasm);
-    run(&mut bindgen, "wasm-bindgen failed; its error is above")
+    run(&mut bindgen, "wasm-bindgen failed; its error is above")?;
+    glue::make_factory(&out.join("pointweave.js"))
 }
 
 fn optimise(build: Build, wasm: &Path) -> Result<()> {

@@ -4,6 +4,7 @@
 //! A failure is one sentence that says what to do.
 
 mod build;
+mod glue;
 mod page;
 mod setup;
 mod shell;
@@ -19,7 +20,7 @@ Pointweave's own commands. Each sets up what is missing first.
 
 Usage: cargo xtask <command> [options]
 
-  build                 both wasm builds, into pkg/wasm/
+  build                 all wasm builds, into pkg/wasm/
   serve [--port N]      the builds and the page, served on localhost (default port 8080)
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,page

@@ -14,7 +14,7 @@ pub fn everything() -> Result<()> {
     rust_component("rustfmt")?;
     rust_component("clippy")?;
     wasm_tools()?;
-    for folder in ["xtask", "pkg", "www", "tests"] {
+    for folder in ["xtask", "pkg", "www", "tests", "tests/consumers"] {
         npm(&root().join(folder))?;
     }
     chromium()?;

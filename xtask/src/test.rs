@@ -19,24 +19,29 @@ pub enum Check {
     Wasm,
     Types,
     Pkg,
+    Element,
     Page,
 }
 
 impl Check {
     /// The quick ones first.
-    const ALL: [(Check, &str); 7] = [
+    const ALL: [(Check, &str); 8] = [
         (Check::Fmt, "fmt"),
         (Check::Clippy, "clippy"),
         (Check::Native, "native"),
         (Check::Wasm, "wasm"),
         (Check::Types, "types"),
         (Check::Pkg, "pkg"),
+        (Check::Element, "element"),
         (Check::Page, "page"),
     ];
 
     /// These read what `cargo xtask build` writes.
     fn needs_package(self) -> bool {
-        matches!(self, Check::Types | Check::Pkg | Check::Page)
+        matches!(
+            self,
+            Check::Types | Check::Pkg | Check::Element | Check::Page
+        )
     }
 }
 
@@ -70,7 +75,11 @@ pub fn test(checks: &[Check]) -> Result<()> {
             Check::Native => log.step("native", native),
             Check::Wasm => wasm(&mut log),
             Check::Types => log.step("types", types),
-            Check::Pkg => log.step("pkg", || node_tests("tests/pkg")),
+            Check::Pkg => log.step("pkg", || {
+                setup::npm(&root().join("tests/consumers"))?;
+                node_tests("tests/pkg")
+            }),
+            Check::Element => log.step("element", || node_tests("tests/element")),
             Check::Page => log.step("page", || {
                 page::page().and_then(|()| node_tests("tests/page"))
             }),
@@ -176,7 +185,7 @@ fn wasm(log: &mut Log) {
     let Some((toolchain, tools, browsers)) = ready else {
         return;
     };
-    for build in Build::ALL {
+    for build in Build::ENGINES {
         log.step(&format!("wasm: compile {}", build.name()), || {
             run(
                 wasm_tests(build, &toolchain, &tools).arg("--no-run"),

@@ -1,8 +1,9 @@
 //! The header: encoding, elements, properties.
 
-use super::super::lines::{Lines, quote};
-use super::super::table::Columns;
-use crate::error::{Error, Result};
+use super::super::input::{Ending, Input};
+use super::super::table::{ColorRange, Columns, Precision};
+use super::super::text::quote;
+use crate::error::Result;
 
 /// A scalar type.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +40,11 @@ impl Scalar {
             Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
             Scalar::F64 => 8,
         }
+    }
+
+    /// Whether single precision holds every value.
+    fn is_single(self) -> bool {
+        !matches!(self, Scalar::I32 | Scalar::U32 | Scalar::F64)
     }
 
     /// The value of `size()` bytes.
@@ -85,21 +91,25 @@ impl Element {
         self.properties.iter().filter_map(name).collect()
     }
 
-    /// Bytes of a binary row, an empty list counted for each list; and whether that is every row's size.
-    pub(super) fn row_size(&self) -> (usize, bool) {
-        let size = |property: &Property| match property {
-            Property::One { scalar, .. } => scalar.size(),
-            Property::List { count, .. } => count.size(),
+    /// Bytes of a row at least: in text a digit and its separator for each value, in binary with empty lists.
+    fn least_size(&self, encoding: Encoding) -> u64 {
+        let size = |property: &Property| match (encoding, property) {
+            (Encoding::Ascii, _) => 2,
+            (_, Property::One { scalar, .. }) => scalar.size() as u64,
+            (_, Property::List { count, .. }) => count.size() as u64,
         };
-        let fixed = self
-            .properties
-            .iter()
-            .all(|p| matches!(p, Property::One { .. }));
-        (self.properties.iter().map(size).sum(), fixed)
+        self.properties.iter().map(size).sum()
+    }
+
+    /// Bytes of every row, where they are the same.
+    pub(super) fn fixed_size(&self, encoding: Encoding) -> Option<u64> {
+        let one = |property: &Property| matches!(property, Property::One { .. });
+        let fixed = encoding != Encoding::Ascii && self.properties.iter().all(one);
+        fixed.then(|| self.least_size(encoding))
     }
 
     /// Which values of a row are what; `None` without x, y and z.
-    fn columns(&self) -> Option<Columns> {
+    fn columns(&self, encoding: Encoding) -> Option<Columns> {
         let mut columns = Columns::from_names(&self.names())?;
         let scalars: Vec<Scalar> = self
             .properties
@@ -109,9 +119,15 @@ impl Element {
                 Property::List { .. } => None,
             })
             .collect();
-        columns.color_is_bytes = columns
-            .color
-            .is_some_and(|color| color.iter().all(|&i| scalars[i].size() == 1));
+        if let Some(color) = columns.color
+            && color.iter().all(|&i| scalars[i].size() == 1)
+        {
+            columns.colors = ColorRange::Bytes;
+        }
+        // Text may have more digits than the type that it names.
+        if encoding != Encoding::Ascii && columns.position.iter().all(|&i| scalars[i].is_single()) {
+            columns.precision = Precision::Single;
+        }
         Some(columns)
     }
 }
@@ -126,137 +142,140 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Byte and line at which the rows start.
-    pub(super) end: usize,
-    pub(super) lines: u64,
+    /// Its last line.
+    line: u64,
 }
 
-impl Header {
-    pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
-        let mut lines = Lines::new(bytes, 0, 0);
-        let first = lines.next().unwrap_or_default();
-        if first.trim_ascii() != b"ply" {
-            return Err(bad_line(1, "\"ply\"", first));
-        }
-        let carriage_return_alone = bytes[first.len()..].first() == Some(&b'\r')
-            && bytes.get(first.len() + 1) != Some(&b'\n');
-        let mut encoding = None;
-        let mut elements: Vec<Element> = Vec::new();
+/// The lines of a header that have been read.
+#[derive(Default)]
+pub(super) struct HeaderLines {
+    encoding: Option<Encoding>,
+    elements: Vec<Element>,
+    /// How the first line ended.
+    ending: Option<Ending>,
+}
+
+impl HeaderLines {
+    /// Reads the lines at hand; the header, once all of it was there.
+    pub(super) fn read(&mut self, input: &mut Input) -> Result<Option<Header>> {
         loop {
-            let start = lines.at;
-            let Some(line) = lines.next() else {
-                return Err(Error::BadFile {
-                    format: "PLY",
-                    place: "byte",
-                    at: bytes.len() as u64,
-                    expected: "\"end_header\"".into(),
-                    found: "the end of the file".into(),
-                });
+            let whole = input.rest();
+            let Some(line) = input.line()? else {
+                return match (input.last, self.ending) {
+                    (false, _) => Ok(None),
+                    (true, None) => Err(input.no_line("\"ply\"")),
+                    (true, Some(_)) => {
+                        let end = input.place.byte;
+                        Err(input.bad_byte(end, "\"end_header\"", "the end of the file"))
+                    }
+                };
             };
-            let number = lines.number;
+            if self.ending.is_none() {
+                if line.trim_ascii() != b"ply" {
+                    return Err(input.bad_line("\"ply\"", line));
+                }
+                self.ending = Some(input.ending);
+                continue;
+            }
             let text = String::from_utf8_lossy(line);
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words[..] {
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, version] => {
-                    encoding = Some(parse_encoding(name, version, number, line)?)
+                    self.encoding = Some(parse_encoding(name, version, input, line)?)
                 }
-                ["element", name, rows] => elements.push(Element {
+                ["element", name, rows] => self.elements.push(Element {
                     name: name.into(),
                     rows: rows
                         .parse()
-                        .map_err(|_| bad_line(number, "a count of rows", rows.as_bytes()))?,
+                        .map_err(|_| input.bad_line("a count of rows", rows.as_bytes()))?,
                     properties: Vec::new(),
-                    line: number,
+                    line: input.place.line,
                 }),
-                ["property", ..] => {
-                    let element = elements.last_mut().ok_or_else(|| {
-                        bad_line(number, "an element before its properties", line)
-                    })?;
-                    element
+                ["property", ..] => match self.elements.last_mut() {
+                    Some(element) => element
                         .properties
-                        .push(parse_property(&words, number, line)?);
-                }
+                        .push(parse_property(&words, input, line)?),
+                    None => return Err(input.bad_line("an element before its properties", line)),
+                },
                 ["end_header"] => {
-                    let encoding = encoding
-                        .ok_or_else(|| bad_line(number, "a format line before end_header", line))?;
-                    // Where lines end in \r alone, a \n after it is the first byte of the rows.
-                    let end = if carriage_return_alone {
-                        start + line.len() + 1
-                    } else {
-                        lines.at
+                    let Some(encoding) = self.encoding else {
+                        return Err(input.bad_line("a format line before end_header", line));
                     };
-                    return Ok(Header {
+                    // Where lines end in \r alone, a \n after it is the first byte of the rows.
+                    if self.ending == Some(Ending::CarriageReturn) && input.ending == Ending::Both {
+                        input.put_back_line_feed(whole);
+                    }
+                    let elements = std::mem::take(&mut self.elements);
+                    return Ok(Some(Header {
                         encoding,
                         elements,
-                        end: end.min(bytes.len()),
-                        lines: number,
-                    });
+                        line: input.place.line,
+                    }));
                 }
                 _ => {
-                    return Err(bad_line(
-                        number,
-                        "a line of a PLY header (format, comment, obj_info, element, property, end_header)",
-                        line,
-                    ));
+                    let expected = "a line of a PLY header (format, comment, obj_info, element, property, end_header)";
+                    return Err(input.bad_line(expected, line));
                 }
             }
         }
     }
+}
+
+impl Header {
+    /// How many rows of the points the file has room for.
+    pub(super) fn most_rows(&self, points: usize, input: &Input) -> u64 {
+        let element = &self.elements[points];
+        // The last line of a text needs no end.
+        let room = (input.left() + 1) / element.least_size(self.encoding).max(1);
+        element.rows.min(room)
+    }
 
     /// The element that holds the points, and its columns.
-    pub(super) fn points(&self) -> Result<(usize, Columns)> {
+    pub(super) fn points(&self, input: &Input) -> Result<(usize, Columns)> {
         let vertex = self.elements.iter().position(|e| e.name == "vertex");
-        let with_xyz = || self.elements.iter().position(|e| e.columns().is_some());
-        let missing = |line: u64, found: String| Error::BadFile {
-            format: "PLY",
-            place: "line",
-            at: line,
-            expected: "an element with properties x, y and z".into(),
-            found,
+        let with_xyz = || {
+            self.elements
+                .iter()
+                .position(|e| e.columns(self.encoding).is_some())
+        };
+        let missing = |line: u64, found: String| {
+            input.bad_at_line(line, "an element with properties x, y and z", found)
         };
         let Some(index) = vertex.or_else(with_xyz) else {
             let names = self.elements.iter().map(|e| e.name.clone()).collect();
-            return Err(missing(self.lines, described("element", names)));
+            return Err(missing(self.line, described("element", names)));
         };
         let element = &self.elements[index];
         let mut names = element.names();
-        let Some(columns) = element.columns() else {
+        let Some(columns) = element.columns(self.encoding) else {
             return Err(missing(element.line, described("property", names)));
         };
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             let expected = "properties with different names";
-            return Err(bad_line(element.line, expected, pair[0].as_bytes()));
+            return Err(input.bad_at_line(element.line, expected, quote(pair[0].as_bytes())));
         }
         Ok((index, columns))
     }
 }
 
-fn parse_encoding(name: &str, version: &str, number: u64, line: &[u8]) -> Result<Encoding> {
+fn parse_encoding(name: &str, version: &str, input: &Input, line: &[u8]) -> Result<Encoding> {
     if version != "1.0" {
-        return Err(bad_line(number, "version 1.0", line));
+        return Err(input.bad_line("version 1.0", line));
     }
     match name {
         "ascii" => Ok(Encoding::Ascii),
         "binary_little_endian" => Ok(Encoding::LittleEndian),
         "binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(bad_line(
-            number,
-            "ascii, binary_little_endian or binary_big_endian",
-            line,
-        )),
+        _ => Err(input.bad_line("ascii, binary_little_endian or binary_big_endian", line)),
     }
 }
 
-fn parse_property(words: &[&str], number: u64, line: &[u8]) -> Result<Property> {
+fn parse_property(words: &[&str], input: &Input, line: &[u8]) -> Result<Property> {
     let scalar = |name: &str| {
         Scalar::from_name(name).ok_or_else(|| {
-            bad_line(
-                number,
-                "a type (char … double, int8 … float64)",
-                name.as_bytes(),
-            )
+            input.bad_line("a type (char … double, int8 … float64)", name.as_bytes())
         })
     };
     match *words {
@@ -268,26 +287,10 @@ fn parse_property(words: &[&str], number: u64, line: &[u8]) -> Result<Property> 
             name: name.into(),
             scalar: scalar(kind)?,
         }),
-        _ => Err(bad_line(
-            number,
+        _ => Err(input.bad_line(
             "property <type> <name> or property list <type> <type> <name>",
             line,
         )),
-    }
-}
-
-pub(super) fn bad_line(at: u64, expected: &str, found: &[u8]) -> Error {
-    let found = if found.is_empty() {
-        "nothing".into()
-    } else {
-        quote(found)
-    };
-    Error::BadFile {
-        format: "PLY",
-        place: "line",
-        at,
-        expected: expected.into(),
-        found,
     }
 }
 

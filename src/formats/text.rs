@@ -1,44 +1,4 @@
-//! Text in bytes: lines, numbers, and quotes for messages.
-
-/// Lines of a byte string, ended by `\n`, `\r\n` or `\r` alone; counted from 1.
-#[derive(Clone)]
-pub(super) struct Lines<'a> {
-    bytes: &'a [u8],
-    /// Where the next line starts.
-    pub(super) at: usize,
-    /// Number of the line given last.
-    pub(super) number: u64,
-}
-
-impl<'a> Lines<'a> {
-    /// Starts at byte `at`, after `number` lines.
-    pub(super) fn new(bytes: &'a [u8], at: usize, number: u64) -> Self {
-        Lines { bytes, at, number }
-    }
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let rest = &self.bytes[self.at..];
-        if rest.is_empty() {
-            return None;
-        }
-        let length = rest
-            .iter()
-            .position(|&b| b == b'\n' || b == b'\r')
-            .unwrap_or(rest.len());
-        let end = match &rest[length..] {
-            [b'\r', b'\n', ..] => 2,
-            [] => 0,
-            _ => 1,
-        };
-        self.at += length + end;
-        self.number += 1;
-        Some(&rest[..length])
-    }
-}
+//! Text in bytes: numbers, and quotes for messages.
 
 /// A number: decimal or exponent notation, `inf` and `nan` in the spellings of C and of Microsoft's run-time, Fortran's
 /// `D` for the exponent. `None` for anything else.
@@ -63,6 +23,12 @@ pub(super) fn number(token: &[u8]) -> Option<f64> {
     None
 }
 
+/// The values of a line between blanks and tabs.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+    line.split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty())
+}
+
 /// Bytes for a message: quoted, not longer than 40 characters, control characters escaped.
 pub(super) fn quote(bytes: &[u8]) -> String {
     const MOST: usize = 40;
@@ -81,14 +47,6 @@ pub(super) fn quote(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_end_in_any_way() {
-        let mut lines = Lines::new(b"a\nb\r\nc\rd\n\ne", 0, 0);
-        let all: Vec<&[u8]> = lines.by_ref().collect();
-        assert_eq!(all, [&b"a"[..], b"b", b"c", b"d", b"", b"e"]);
-        assert_eq!(lines.number, 6);
-    }
 
     #[test]
     fn numbers_of_many_dialects() {

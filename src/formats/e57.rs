@@ -1,0 +1,236 @@
+//! E57 (ASTM E2807), by the crate `e57`: the points of all its scans, each at its pose, spherical coordinates made Cartesian.
+//! Colours are taken over the range that the file gives them, `intensity` as it is, normals where the extension for
+//! surface normals has them. Points that the scanner marked as invalid are left out and counted.
+//!
+//! The file is kept until all of it is there, because its directory is at its end; scans are then read one after the other.
+
+use super::input::Input;
+use super::reading::{Parser, Step};
+use super::table::{ColorRange, Columns, Precision, Table};
+use crate::error::{Error, Result};
+use ::e57::{CartesianCoordinate, E57Reader, PointCloud, RecordDataType, RecordName, Transform};
+use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// After so many points the scan is the last of its step.
+const STEP: u64 = 1 << 18;
+
+/// Reads the points.
+#[derive(Default)]
+pub(super) struct E57 {
+    /// Scans that have been read.
+    read: usize,
+}
+
+impl Parser for E57 {
+    fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
+        if !input.last {
+            return Ok(Step::More);
+        }
+        let bytes = input.rest();
+        if !bytes.starts_with(b"ASTM-E57") {
+            let found = super::text::quote(&bytes[..bytes.len().min(8)]);
+            return Err(input.bad_byte(0, "\"ASTM-E57\"", found));
+        }
+        let mut file = guarded(input, 0, || E57Reader::new(Cursor::new(bytes)))?;
+        let scans = file.pointclouds();
+        let table = table
+            .get_or_insert_with(|| Table::new(columns(&scans), Some(room(&scans, bytes.len()))));
+        let start = table.rows;
+        while let Some(scan) = scans.get(self.read) {
+            if table.rows - start >= STEP {
+                return Ok(Step::More);
+            }
+            read_scan(&mut file, scan, input, table)?;
+            self.read += 1;
+        }
+        Ok(Step::Done)
+    }
+}
+
+/// The normals' names in their extension.
+const NORMAL: [&str; 3] = ["normalX", "normalY", "normalZ"];
+
+/// Where the prototype of a scan has the normals.
+fn normals(scan: &PointCloud) -> Option<[usize; 3]> {
+    let find = |wanted: &str| {
+        scan.prototype.iter().position(|record| match &record.name {
+            RecordName::Unknown { name, .. } => name == wanted,
+            _ => false,
+        })
+    };
+    let [x, y, z] = NORMAL.map(find);
+    Some([x?, y?, z?])
+}
+
+/// The columns of the rows that [`read_scan`] makes: what any of the scans has.
+fn columns(scans: &[PointCloud]) -> Columns {
+    let any = |has: fn(&PointCloud) -> bool| scans.iter().any(has);
+    Columns {
+        position: [0, 1, 2],
+        color: any(PointCloud::has_color).then_some([3, 4, 5]),
+        scalars: if any(PointCloud::has_intensity) {
+            vec![(6, "intensity".into())]
+        } else {
+            Vec::new()
+        },
+        normal: any(|scan| normals(scan).is_some()).then_some([7, 8, 9]),
+        colors: ColorRange::Unit,
+        precision: if scans.iter().all(is_single) {
+            Precision::Single
+        } else {
+            Precision::Double
+        },
+    }
+}
+
+/// Whether single precision holds the coordinates: they have no more, and stay where they are.
+fn is_single(scan: &PointCloud) -> bool {
+    let axes = [
+        RecordName::CartesianX,
+        RecordName::CartesianY,
+        RecordName::CartesianZ,
+    ];
+    let mut records = scan
+        .prototype
+        .iter()
+        .filter(|record| axes.contains(&record.name));
+    let single = |record: &::e57::Record| matches!(record.data_type, RecordDataType::Single { .. });
+    scan.has_cartesian() && scan.transform.is_none() && records.all(single)
+}
+
+/// Points of all scans, as far as a file of this size can hold them.
+fn room(scans: &[PointCloud], size: usize) -> u64 {
+    let most = |scan: &PointCloud| scan.records.min(8 * size as u64 / bits(scan).max(1));
+    scans.iter().map(most).fold(0, u64::saturating_add)
+}
+
+/// Bits of a point.
+fn bits(scan: &PointCloud) -> u64 {
+    let bits = |data_type: &RecordDataType| match *data_type {
+        RecordDataType::Single { .. } => 32,
+        RecordDataType::Double { .. } => 64,
+        RecordDataType::ScaledInteger { min, max, .. } | RecordDataType::Integer { min, max } => {
+            u64::from(64 - min.abs_diff(max).leading_zeros())
+        }
+    };
+    scan.prototype
+        .iter()
+        .map(|record| bits(&record.data_type))
+        .sum()
+}
+
+fn read_scan(
+    file: &mut E57Reader<Cursor<&[u8]>>,
+    scan: &PointCloud,
+    input: &Input,
+    table: &mut Table,
+) -> Result<()> {
+    let at = scan.file_offset;
+    let bytes = input.rest();
+    let most = 8 * bytes.len() as u64 / bits(scan).max(1);
+    // Points of no bits, all the same, take no bytes: the crate would make them without end.
+    if scan.records > most || (scan.records > 0 && bits(scan) == 0) {
+        let expected = format!(
+            "a scan of {} points of {} bits each",
+            scan.records,
+            bits(scan)
+        );
+        return Err(input.bad_byte(at, &expected, format!("a file of {} bytes", bytes.len())));
+    }
+    if !scan.has_cartesian() && !scan.has_spherical() {
+        return Err(input.unsupported(
+            "scans with Cartesian or spherical coordinates",
+            "one without",
+        ));
+    }
+    guarded(input, at, || {
+        let mut points = file.pointcloud_simple(scan)?;
+        points.intensity_to_color(false);
+        points.normalize_intensity(false);
+        let turn = Turn::of(scan.transform.as_ref());
+        // Normals are none of what the crate knows, so they are read beside the points.
+        let mut second = E57Reader::new(Cursor::new(bytes))?;
+        let mut raw = match normals(scan) {
+            Some(indices) => Some((second.pointcloud_raw(scan)?, indices)),
+            None => None,
+        };
+        for point in points {
+            let point = match point {
+                Err(error) if is_packet_without_points(&error) => continue,
+                other => other?,
+            };
+            let mut row = [f64::NAN; 10];
+            if let CartesianCoordinate::Valid { x, y, z } = point.cartesian {
+                row[..3].copy_from_slice(&[x, y, z]);
+            }
+            let color = point
+                .color
+                .map_or([0.0; 3], |color| [color.red, color.green, color.blue]);
+            row[3..6].copy_from_slice(&color.map(f64::from));
+            row[6] = f64::from(point.intensity.unwrap_or(0.0));
+            row[7..].fill(0.0);
+            if let Some((raw, indices)) = &mut raw
+                && let Some(values) = raw.next()
+            {
+                let values = values?;
+                let mut normal = [0.0; 3];
+                for (value, &i) in normal.iter_mut().zip(&*indices) {
+                    *value = values[i].to_f64(&scan.prototype[i].data_type)?;
+                }
+                row[7..].copy_from_slice(&turn.apply(normal));
+            }
+            table.push(&row);
+        }
+        Ok(())
+    })
+}
+
+/// A packet may have no whole point, and an index has none: the crate (0.11.13) then gives this error where it should go on, as
+/// it does when it is asked again.
+fn is_packet_without_points(error: &::e57::Error) -> bool {
+    matches!(error, ::e57::Error::Internal { desc, .. } if desc == "Cannot read next point because of logic error")
+}
+
+/// The rotation of a pose.
+struct Turn([[f64; 3]; 3]);
+
+impl Turn {
+    fn of(pose: Option<&Transform>) -> Turn {
+        let Some(pose) = pose else {
+            return Turn([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        };
+        let ::e57::Quaternion { w, x, y, z } = pose.rotation;
+        Turn([
+            [
+                w * w + x * x - y * y - z * z,
+                2.0 * (x * y - w * z),
+                2.0 * (x * z + w * y),
+            ],
+            [
+                2.0 * (x * y + w * z),
+                w * w + y * y - x * x - z * z,
+                2.0 * (y * z - w * x),
+            ],
+            [
+                2.0 * (x * z - w * y),
+                2.0 * (y * z + w * x),
+                w * w + z * z - x * x - y * y,
+            ],
+        ])
+    }
+
+    fn apply(&self, v: [f64; 3]) -> [f64; 3] {
+        self.0
+            .map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+    }
+}
+
+/// What the crate gives; its errors, and its panics, as an error at `at`.
+fn guarded<T>(input: &Input, at: u64, call: impl FnOnce() -> ::e57::Result<T>) -> Result<T> {
+    let bad = |found: String| -> Error { input.bad_byte(at, "E57 content", found) };
+    match catch_unwind(AssertUnwindSafe(call)) {
+        Ok(result) => result.map_err(|error| bad(error.to_string())),
+        Err(_) => Err(bad("content that cannot be taken apart".into())),
+    }
+}

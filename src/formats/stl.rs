@@ -1,0 +1,201 @@
+//! STL (3D Systems, 1989), ascii and binary: the vertices of its triangles. Every triangle repeats its corners, so vertices
+//! of exactly equal coordinates are one point, where it came first.
+
+use super::input::Input;
+use super::reading::{Parser, Step};
+use super::table::{ColorRange, Columns, Precision, Table};
+use super::text::{number, words};
+use crate::error::Result;
+use std::collections::HashSet;
+
+/// Before the triangles of a binary file: 80 bytes of any content and their count.
+const HEADER: u64 = 84;
+/// Bytes of a triangle: its normal, three vertices, and two more.
+const TRIANGLE: usize = 50;
+
+/// Whether the size is that of a binary file, or the content starts as an ascii file does.
+pub(super) fn looks_like(head: &[u8], size: u64) -> bool {
+    let text = head.trim_ascii_start();
+    let ascii = || {
+        let solid = text.len() >= 5 && text[..5].eq_ignore_ascii_case(b"solid");
+        let keyword = |word: &[u8]| {
+            [&b"facet"[..], b"endsolid"]
+                .iter()
+                .any(|key| word.eq_ignore_ascii_case(key))
+        };
+        solid
+            && text
+                .split(|&b| b == b'\n' || b == b'\r')
+                .skip(1)
+                .filter_map(|line| words(line).next())
+                .any(keyword)
+    };
+    is_binary(head, size) || ascii()
+}
+
+/// Whether the count of triangles is that of the size. A binary file's header may start with "solid", too.
+fn is_binary(head: &[u8], size: u64) -> bool {
+    match head.get(80..84) {
+        Some(&[a, b, c, d]) => {
+            let count = u32::from_le_bytes([a, b, c, d]);
+            count > 0 && size == HEADER + u64::from(count) * TRIANGLE as u64
+        }
+        _ => false,
+    }
+}
+
+/// Reads the vertices.
+#[derive(Default)]
+pub(super) struct Stl {
+    kind: Option<Kind>,
+    seen: HashSet<[u32; 3]>,
+    triangles: u64,
+}
+
+enum Kind {
+    /// How many triangles there are.
+    Binary(u32),
+    /// The vertices since the last triangle ended, and whether a solid is open.
+    Ascii { corners: u8, open: bool },
+}
+
+impl Parser for Stl {
+    fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
+        if self.kind.is_none() {
+            let head = input.rest();
+            if head.len() < HEADER as usize && !input.last {
+                return Ok(Step::More);
+            }
+            self.kind = Some(kind(input)?);
+        }
+        let table = table.get_or_insert_with(|| Table::new(columns(), None));
+        match self.kind {
+            Some(Kind::Binary(count)) => self.binary(count, input, table),
+            _ => self.ascii(input, table),
+        }
+    }
+
+    fn faces(&self) -> u64 {
+        self.triangles
+    }
+}
+
+/// What kind of file it is; a binary one's header is taken.
+fn kind(input: &mut Input) -> Result<Kind> {
+    let head = input.rest();
+    let ascii = Kind::Ascii {
+        corners: 0,
+        open: false,
+    };
+    let starts = head.trim_ascii_start();
+    let solid = starts.len() >= 5 && starts[..5].eq_ignore_ascii_case(b"solid");
+    // Text has no zeros: what has is a binary file, cut off.
+    let text = !head[..head.len().min(HEADER as usize)].contains(&0);
+    if solid && text && !is_binary(head, input.size) {
+        return Ok(ascii);
+    }
+    match input.take(HEADER as usize) {
+        Some(&[.., a, b, c, d]) => Ok(Kind::Binary(u32::from_le_bytes([a, b, c, d]))),
+        _ => Err(input.no_bytes(HEADER, "the header, or \"solid\"")),
+    }
+}
+
+impl Stl {
+    fn binary(&mut self, count: u32, input: &mut Input, table: &mut Table) -> Result<Step> {
+        let count = u64::from(count);
+        let missing = (count - self.triangles) * TRIANGLE as u64;
+        if missing > input.left() {
+            return Err(input.no_bytes(missing, &format!("{count} triangles")));
+        }
+        while self.triangles < count {
+            let Some(triangle) = input.take(TRIANGLE) else {
+                let missing = (count - self.triangles) * TRIANGLE as u64;
+                return if input.last {
+                    Err(input.no_bytes(missing, &format!("{count} triangles")))
+                } else {
+                    Ok(Step::More)
+                };
+            };
+            for corner in triangle[12..48].chunks_exact(12) {
+                let value = |at: usize| {
+                    f32::from_le_bytes([corner[at], corner[at + 1], corner[at + 2], corner[at + 3]])
+                };
+                self.vertex([0, 4, 8].map(value), table);
+            }
+            self.triangles += 1;
+        }
+        Ok(Step::Done)
+    }
+
+    fn ascii(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        let Some(Kind::Ascii {
+            mut corners,
+            mut open,
+        }) = self.kind
+        else {
+            return Ok(Step::Done);
+        };
+        while let Some(line) = input.line()? {
+            let mut words = words(line);
+            let key = words.next().unwrap_or_default().to_ascii_lowercase();
+            match &key[..] {
+                b"solid" => open = true,
+                b"endsolid" => open = false,
+                b"vertex" => {
+                    let mut vertex = [0.0; 3];
+                    for value in &mut vertex {
+                        let word = words.next().unwrap_or_default();
+                        *value = number(word)
+                            .ok_or_else(|| input.bad_line("the 3 coordinates of a vertex", line))?
+                            as f32;
+                    }
+                    corners += 1;
+                    self.vertex(vertex, table);
+                }
+                b"endfacet" if corners == 3 => {
+                    corners = 0;
+                    self.triangles += 1;
+                }
+                b"endfacet" => {
+                    return Err(
+                        input.bad_line(&format!("3 vertices before it, not {corners}"), line)
+                    );
+                }
+                b"" | b"facet" | b"outer" | b"endloop" | b"color" => {}
+                _ => {
+                    return Err(input.bad_line(
+                        "a line of an STL file (solid, facet, outer loop, vertex …)",
+                        line,
+                    ));
+                }
+            }
+            if corners > 3 {
+                return Err(input.bad_line("the end of a triangle", line));
+            }
+        }
+        self.kind = Some(Kind::Ascii { corners, open });
+        match (input.last, open) {
+            (false, _) => Ok(Step::More),
+            (true, true) => Err(input.no_line("\"endsolid\"")),
+            (true, false) => Ok(Step::Done),
+        }
+    }
+
+    fn vertex(&mut self, vertex: [f32; 3], table: &mut Table) {
+        // Both zeros are one.
+        if self.seen.insert(vertex.map(|x| (x + 0.0).to_bits())) {
+            table.push(&vertex.map(f64::from));
+        }
+    }
+}
+
+fn columns() -> Columns {
+    Columns {
+        position: [0, 1, 2],
+        normal: None,
+        color: None,
+        scalars: Vec::new(),
+        colors: ColorRange::Guess,
+        precision: Precision::Single,
+    }
+}

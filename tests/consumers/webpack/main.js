@@ -1,0 +1,3 @@
+import { job, show } from '../job.js';
+
+show(job());

@@ -1,0 +1,65 @@
+// The documentation's pages run as they stand, and its TypeScript fits.
+
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import ts from 'typescript';
+import { silhouette } from '../page/pictures.mjs';
+import { ball, duckScan, glb, poster } from './files.mjs';
+import { startSite, test } from './site.mjs';
+
+const DOCUMENT = readFileSync(new URL('../../pkg/docs/embed.md', import.meta.url), 'utf8');
+const blocks = (language) => [...DOCUMENT.matchAll(/^```(\w*)\n([\s\S]*?)^```$/gm)].filter(([, name]) => name === language).map(([, , text]) => text);
+
+const site = await startSite();
+site.put('/docs/duck.ply', (await duckScan()).bytes);
+site.put('/docs/duck.glb', await glb([{ ...ball(12), color: [200, 160, 10] }]));
+site.put('/docs/duck.png', poster('#8020c0'), { 'Content-Type': 'image/svg+xml' });
+
+for (const [i, html] of blocks('html').entries()) {
+  test(`page ${i + 1} of embed.md`, async () => {
+    const shown = await site.visit(site.put(`/docs/${i}.html`, html));
+    assert.ok(await shown.element().count() > 0);
+    await shown.loaded();
+    for (let k = 0; k < await shown.element().count(); k++) {
+      const picture = await shown.element().nth(k).screenshot({ animations: 'disabled' });
+      assert.ok(silhouette(picture).area > 1000, `element ${k} shows something`);
+    }
+    if (html.includes('id="status"')) assert.equal(await shown.page.innerText('#status'), '3000 points became 2000');
+    assert.deepEqual(shown.faults, []);
+    await shown.keep(`docs-${i}`);
+  });
+}
+
+test('the TypeScript of embed.md fits', async (t) => {
+  const folder = mkdtempSync(join(import.meta.dirname, 'docs-')); // in here, so that its imports are found
+  t.after(() => rmSync(folder, { recursive: true }));
+  const files = blocks('tsx').map((text, i) => {
+    const file = join(folder, `${i}.tsx`);
+    writeFileSync(file, text);
+    return file;
+  });
+  assert.equal(files.length, 1);
+  const program = ts.createProgram(files, {
+    strict: true, noEmit: true, skipLibCheck: true, types: [], target: ts.ScriptTarget.ES2023, jsx: ts.JsxEmit.ReactJSX,
+    module: ts.ModuleKind.ESNext, moduleResolution: ts.ModuleResolutionKind.Bundler,
+  });
+  assert.deepEqual(ts.getPreEmitDiagnostics(program).map(({ messageText }) => ts.flattenDiagnosticMessageText(messageText, '\n')), []);
+});
+
+test('every attribute, event, slot, part and custom property is documented', async () => {
+  const shown = await site.open('<point-weave></point-weave>');
+  const { attributes, parts, slots, css } = await shown.element().evaluate((element) => {
+    const { shadowRoot } = element;
+    const all = [...shadowRoot.querySelectorAll('*')];
+    return {
+      attributes: element.constructor.observedAttributes,
+      parts: all.flatMap((part) => [...part.part]),
+      slots: all.filter(({ localName }) => localName === 'slot').map(({ name }) => name),
+      css: [...shadowRoot.adoptedStyleSheets[0].cssRules].map(({ cssText }) => cssText).join(),
+    };
+  });
+  const properties = css.match(/--point-weave-[a-z-]+/g);
+  assert.ok(attributes.length >= 9 && parts.length > 15 && slots.length === 4 && properties.length > 8);
+  for (const name of [...attributes, ...parts, ...slots, ...properties]) assert.ok(DOCUMENT.includes(`\`${name}\``), `${name} is in embed.md`);
+});

@@ -1,0 +1,87 @@
+// Installed from the tarball, built with what people build with, and run in a browser: the same mesh everywhere.
+
+import assert from 'node:assert/strict';
+import { execFile, spawn } from 'node:child_process';
+import { rm } from 'node:fs/promises';
+import test, { after } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { promisify } from 'node:util';
+import { ISOLATED, newPage, serveFolders } from './browser.mjs';
+import { CONSUMERS, install, pack } from './tarball.mjs';
+
+const run = promisify(execFile);
+const folder = (name) => new URL(`${name}/`, CONSUMERS);
+const ENVIRONMENT = { ...process.env, NEXT_TELEMETRY_DISABLED: '1', NO_COLOR: '1' };
+
+/** Runs a program of the consumers' own in a folder of theirs. */
+const build = (name, ...program) =>
+  run(process.execPath, program.map((word) => word.replace(/^bin:/, fileURLToPath(new URL('node_modules', CONSUMERS)))), { cwd: fileURLToPath(folder(name)), env: ENVIRONMENT });
+
+await install((await pack({ after })).file);
+
+/** What Node says: all others have to say the same. */
+const expected = JSON.parse((await build('node', 'main.js')).stdout);
+
+/** @param {any} said by a page */
+function checkResult(said) {
+  assert.equal(said.error, undefined);
+  assert.deepEqual(said.hashes, expected.hashes);
+  assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
+}
+
+/** Opens a page and waits for what it has to say. */
+async function resultAt(t, address) {
+  const page = await newPage(t);
+  await page.goto(address);
+  await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
+  return page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
+}
+
+test('Node: every build and way gives one mesh', () => {
+  assert.equal(expected.hashes.length, 4);
+  assert.equal(new Set(expected.hashes).size, 1);
+  assert.deepEqual(expected.reasons, ['threads', 'Node has threads', 'single', 'threads need a worker', 'single', 'threads need a worker']);
+});
+
+test('a module script with an import map', async (t) => {
+  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('importmap'), CONSUMERS])));
+});
+
+test('Vite, built', async (t) => {
+  await build('vite', 'bin:vite/bin/vite.js', 'build');
+  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('vite/dist')])));
+});
+
+test('Vite, its development server', async (t) => {
+  const vite = spawn(process.execPath, [fileURLToPath(folder('node_modules/vite/bin')) + 'vite.js', '--port', '0'], { cwd: fileURLToPath(folder('vite')), env: ENVIRONMENT });
+  t.after(() => vite.kill());
+  const address = await new Promise((resolve, reject) => {
+    let said = '';
+    vite.stdout.on('data', (text) => {
+      said += text;
+      const found = /http:\/\/localhost:\d+\//.exec(said);
+      if (found) resolve(found[0]);
+    });
+    vite.once('exit', () => reject(new Error(said)));
+  });
+  checkResult(await resultAt(t, address));
+});
+
+test('webpack', async (t) => {
+  const { default: webpack } = await import(new URL('node_modules/webpack/lib/index.js', CONSUMERS).href);
+  const { default: config } = await import(new URL('webpack/webpack.config.js', CONSUMERS).href);
+  const stats = await promisify(webpack)(config);
+  assert.deepEqual([...stats.toJson().errors, ...stats.toJson().warnings].map(({ message }) => message), []);
+  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('webpack/dist'), folder('webpack')])));
+});
+
+test('esbuild', async (t) => {
+  await build('esbuild', 'build.js');
+  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('esbuild/dist'), folder('esbuild')])));
+});
+
+test('Next.js, rendered on the server and exported', async (t) => {
+  await rm(folder('next/dist'), { recursive: true, force: true });
+  await build('next', 'bin:next/dist/bin/next', 'build');
+  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('next/dist')])));
+});

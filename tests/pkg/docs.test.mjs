@@ -1,0 +1,100 @@
+// Every snippet of the package's documentation runs, in a page or in Node, or is a part of something that does.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { cp, mkdir, mkdtemp, readFile, readdir, rm, symlink, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test, { after } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { promisify } from 'node:util';
+import { sample, write } from 'pointweave';
+import { ISOLATED, OPEN, openBrowser, serve } from './browser.mjs';
+import { CONSUMERS, PACKAGE } from './tarball.mjs';
+
+const scan = Buffer.from(await write(await sample('duck', { count: 5000 }), { format: 'ply' }));
+
+const browser = await openBrowser({ after });
+
+const folder = await mkdtemp(join(tmpdir(), 'pointweave-docs-'));
+after(() => rm(folder, { recursive: true }));
+await mkdir(join(folder, 'node_modules'));
+await cp(PACKAGE, join(folder, 'node_modules/pointweave'), { recursive: true });
+for (const peer of ['@gltf-transform', 'meshoptimizer']) {
+  await symlink(fileURLToPath(new URL(`../node_modules/${peer}`, import.meta.url)), join(folder, 'node_modules', peer));
+}
+await writeFile(join(folder, 'package.json'), '{ "type": "module" }');
+await writeFile(join(folder, 'scan.ply'), scan);
+await writeFile(join(folder, 'good.xyz'), '0 0 0\n1 0 0\n0 1 0\n0 0 1\n');
+
+/** Runs a module in a folder that holds a scan. */
+async function runInNode(code) {
+  const file = join(folder, 'snippet.mjs');
+  await writeFile(file, code);
+  const { stderr } = await promisify(execFile)(process.execPath, [file], { cwd: folder });
+  assert.equal(stderr, '');
+}
+
+const IMPORT_MAP = `<script type="importmap">{ "imports": { "pointweave": "/node_modules/pointweave/index.js", "pointweave/core": "/node_modules/pointweave/direct.js" } }</script>`;
+/** A snippet of a module as a page, which says when its end is reached. */
+const asPage = (code) => `<!doctype html><title>test</title>${IMPORT_MAP}<script type="module">${code}
+document.body.append(document.createElement('output')); document.querySelector('output').textContent = 'done';</script>`;
+
+/** Opens a page, gives it a file where it asks for one, and waits until it has something to say. */
+async function runInPage(t, html, routes = {}) {
+  const page = await browser.newPage();
+  t.after(() => page.close());
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  await page.route('**/node_modules/pointweave/**', (route) => route.continue({ url: route.request().url().replace('/node_modules/', '/') }));
+  const address = await serve(t, ISOLATED, { '/': () => html, '/scan.ply': () => scan, '/favicon.ico': () => 'none', ...routes });
+  await page.goto(address);
+  const input = page.locator('input[type=file]');
+  if (await input.count()) await input.setInputFiles({ name: 'scan.ply', mimeType: 'application/octet-stream', buffer: scan });
+  const done = page.waitForFunction(() => document.querySelector('output')?.textContent, undefined, { timeout: 60_000 });
+  await Promise.race([done, new Promise((_, reject) => page.once('pageerror', reject))]);
+  assert.deepEqual(faults, []);
+}
+
+/** Starts a snippet as the worker of a page, with another origin in the place of its CDN. */
+async function runAsWorker(t, code) {
+  const cdn = (await serve(t, { ...OPEN, ...ISOLATED }, {})).replace('localhost', '127.0.0.1');
+  const script = code.replace('https://cdn.example/', cdn);
+  assert.notEqual(script, code);
+  const page = asPage(`import { createEngine } from 'pointweave';
+    const engine = await createEngine({ workerUrl: '/pointweave-worker.js' });
+    await engine.sample('duck', { count: 100 });`);
+  await runInPage(t, page, { '/pointweave-worker.js': () => script });
+}
+
+/** The fenced blocks of a page, each with the comment before it. */
+const FENCED = /(?:<!-- (.*) -->\n)?```(\w*)\n([^]*?)```/g;
+/** What is no program. */
+const PLAIN = ['http', '', 'sh'];
+
+/** Its snippets are pages with an element: `tests/element` opens them. */
+const EMBED = 'docs/embed.md';
+const pages = ['README.md', ...(await readdir(new URL('docs/', PACKAGE))).map((name) => `docs/${name}`)];
+for (const name of pages) {
+  const text = await readFile(new URL(name, PACKAGE), 'utf8');
+
+  test(`${name}: links lead somewhere`, async () => {
+    for (const [, target] of text.matchAll(/\]\((?!https?:)([^)#]+)/g)) await readFile(new URL(target, new URL(name, PACKAGE)));
+  });
+
+  let number = 0;
+  for (const [, where, language, code] of text.matchAll(FENCED)) {
+    if (PLAIN.includes(language) || name === EMBED) continue;
+    test(`${name}, snippet ${++number}`, async (t) => {
+      if (where === 'in Node') return runInNode(code);
+      if (where === 'in a page') return runInPage(t, language === 'html' ? code : asPage(code));
+      if (where === 'as a worker') return runAsWorker(t, code);
+      const other = /^from (.+)$/.exec(where ?? '')?.[1];
+      if (other) return assert.ok((await readFile(new URL(other, PACKAGE), 'utf8')).includes(code));
+      const file = /^as (.+)$/.exec(where ?? '')?.[1];
+      assert.ok(file, `nothing says where it runs:\n${code}`);
+      assert.equal(code, await readFile(new URL(file, CONSUMERS), 'utf8'));
+    });
+  }
+}

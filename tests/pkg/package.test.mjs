@@ -1,0 +1,107 @@
+// What is published: the entries, the files, the licences, the sizes.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { readFile } from 'node:fs/promises';
+import test, { after } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { promisify } from 'node:util';
+import { gzipSync } from 'node:zlib';
+import { build } from 'esbuild';
+import { publint } from 'publint';
+import { formatMessage } from 'publint/utils';
+import { PACKAGE, pack } from './tarball.mjs';
+
+const run = promisify(execFile);
+const path = (name) => fileURLToPath(new URL(name, PACKAGE));
+const text = (name) => readFile(new URL(name, PACKAGE), 'utf8');
+const manifest = JSON.parse(await text('package.json'));
+
+const tarball = await pack({ after });
+
+/** The files that a manifest's `exports` or `bin` names. */
+function targets(value) {
+  return typeof value === 'string' ? [value.replace(/^\.\//, '')] : Object.values(value ?? {}).flatMap(targets);
+}
+
+/** How one module names another, or a file beside it. */
+const REFERENCES = [/\bfrom '(\.[^']+)'/g, /\bimport\('(\.[^']+)'\)/g, /\bimport '(\.[^']+)'/g, /new URL\('(\.\/[^']+)', import\.meta\.url\)/g];
+
+/** Modules, and all that they name, and so on. */
+async function reached(names, found = new Set()) {
+  for (const name of names) {
+    if (found.has(name)) continue;
+    found.add(name);
+    if (!/\.(js|ts)$/.test(name)) continue;
+    const source = (await text(name)).replace(/\/\*[^]*?\*\/|^\s*\/\/.*$/gm, '');
+    const named = REFERENCES.flatMap((pattern) => [...source.matchAll(pattern)].map(([, relative]) => new URL(relative, `file:///${name}`).pathname.slice(1)));
+    await reached(named.map((other) => (name.endsWith('.d.ts') ? other.replace(/(?<!\.d)\.js$/, '.d.ts') : other)), found);
+  }
+  return found;
+}
+
+test('the tarball holds what the entries reach, documentation and licences, and nothing else', async () => {
+  const wasm = ['single', 'threads'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
+  const entries = [manifest.exports, manifest.bin].flatMap(targets).filter((name) => !name.includes('*'));
+  const needed = await reached([...entries, ...wasm]);
+  const documents = tarball.contents.filter((name) => /^docs\/[a-z-]+\.md$/.test(name));
+  assert.deepEqual(tarball.contents, [...needed, ...documents, 'README.md', 'LICENSE-APACHE', 'LICENSE-MIT'].sort());
+  assert.ok(needed.has('types.core.d.ts') && needed.has('worker.node.js') && documents.length > 3);
+});
+
+test('the licences are those of the project', async () => {
+  for (const name of ['LICENSE-MIT', 'LICENSE-APACHE']) assert.equal(await text(name), await readFile(new URL(`../../${name}`, import.meta.url), 'utf8'));
+});
+
+test('the package installs nothing and runs nothing', () => {
+  for (const key of ['dependencies', 'scripts', 'main']) assert.equal(manifest[key], undefined, key);
+});
+
+test('publint finds nothing', async () => {
+  const { messages } = await publint({ pkgDir: path('.'), strict: true, pack: 'npm' });
+  assert.deepEqual(messages.map((message) => formatMessage(message, manifest)), []);
+});
+
+test('the types are not wrong', async () => {
+  const attw = fileURLToPath(new URL('../node_modules/@arethetypeswrong/cli/dist/index.js', import.meta.url));
+  const { stdout } = await run(process.execPath, [attw, tarball.file, '--profile', 'esm-only', '--format', 'json']);
+  const { analysis, problems } = JSON.parse(stdout);
+  assert.deepEqual(Object.keys(analysis.entrypoints).sort(), Object.keys(manifest.exports).sort());
+  // What imports ES modules; `require` and Node 10 are not served.
+  const wrong = Object.values(problems).flat().filter(({ resolutionKind }) => !['node10', 'node16-cjs'].includes(resolutionKind));
+  assert.deepEqual(wrong, []);
+});
+
+test('what is not called is left out of a bundle, and the worker is not', async () => {
+  const bundled = async (contents) => {
+    const { metafile } = await build({
+      stdin: { contents, resolveDir: fileURLToPath(new URL('..', import.meta.url)) },
+      bundle: true, format: 'esm', write: false, metafile: true, logLevel: 'silent',
+    });
+    return Object.values(metafile.outputs)[0];
+  };
+  assert.equal((await bundled("import 'pointweave'")).bytes, 0);
+  assert.equal((await bundled("import 'pointweave/core'")).bytes, 0);
+  assert.ok((await bundled("import 'pointweave/worker'")).bytes > 1000);
+});
+
+/** Most bytes of each part, gzipped. */
+const BUDGET = { single: 360_000, threads: 430_000, glue: 15_000 };
+
+test('nothing is larger than its budget', async () => {
+  const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;
+  for (const name of ['single', 'threads']) {
+    const bytes = zipped(await readFile(new URL(`wasm/${name}/pointweave_bg.wasm`, PACKAGE)));
+    assert.ok(bytes <= BUDGET[name], `${name}: ${bytes} bytes`);
+  }
+  const { outputFiles } = await build({
+    entryPoints: [path('index.js'), path('worker.js')], outdir: 'out',
+    bundle: true, minify: true, splitting: true, format: 'esm', write: false, logLevel: 'silent',
+  });
+  const sizes = outputFiles.map(({ path, contents }) => ({ path, bytes: zipped(contents) }));
+  // Of the two that belong to the builds, a page loads one.
+  const builds = sizes.filter(({ path }) => /\/pointweave-\w+\.js$/.test(path)).map(({ bytes }) => bytes);
+  assert.equal(builds.length, 2);
+  const bytes = sizes.reduce((sum, { bytes }) => sum + bytes, -Math.min(...builds));
+  assert.ok(bytes <= BUDGET.glue, `JavaScript, minified: ${bytes} bytes`);
+});
