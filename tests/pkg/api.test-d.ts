@@ -49,8 +49,8 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const now: SurfaceMesh<Float64Array> = core.reconstruct(core.reduce(exact), { reduce: false });
   // @ts-expect-error threads need an engine
   await load({ threads: 2 });
-  // @ts-expect-error a file has to be waited for
-  core.read(file);
+  // @ts-expect-error files are waited for
+  const early: PointCloud = core.read(file);
   // @ts-expect-error one target only: a string is none
   await reduce(cloud, { target: '0.3' });
   // @ts-expect-error no such option
@@ -68,5 +68,5 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   } catch (error) {
     if (error instanceof PointweaveError && error.code === 'out-of-memory') return error.index;
   }
-  return [now, info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers, format];
+  return [now, early, info.bounds.min[0], bytes.length + glb.length, mesh.cloud.report.distance.rms, mesh.report.genus, share, members, labelled.report.outliers, format];
 }
