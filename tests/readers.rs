@@ -747,3 +747,10 @@ fn damaged_times_do_not_overflow_the_stack() {
         }
     }
 }
+
+/// Found by fuzzing: whether a file was text depended on how many bytes of it were at hand.
+#[test]
+fn stl_is_told_from_its_first_bytes_alone() {
+    let file = [" ".repeat(100).as_bytes(), b"solid a\nendsolid a\n"].concat();
+    check::check(&file, &[Format::Stl]);
+}

@@ -82,7 +82,8 @@ impl Parser for Stl {
 
 /// What kind of file it is; a binary one's header is taken.
 fn kind(input: &mut Input) -> Result<Kind> {
-    let head = input.rest();
+    // No more than a binary header, however many bytes are at hand: slices must not matter.
+    let head = &input.rest()[..input.rest().len().min(HEADER as usize)];
     let ascii = Kind::Ascii {
         corners: 0,
         open: false,
@@ -90,8 +91,7 @@ fn kind(input: &mut Input) -> Result<Kind> {
     let starts = head.trim_ascii_start();
     let solid = starts.len() >= 5 && starts[..5].eq_ignore_ascii_case(b"solid");
     // Text has no zeros: what has is a binary file, cut off.
-    let text = !head[..head.len().min(HEADER as usize)].contains(&0);
-    if solid && text && !is_binary(head, input.size) {
+    if solid && !head.contains(&0) && !is_binary(head, input.size) {
         return Ok(ascii);
     }
     match input.take(HEADER as usize) {

@@ -15,7 +15,7 @@ const ENVIRONMENT = { ...process.env, NEXT_TELEMETRY_DISABLED: '1', NO_COLOR: '1
 
 /** Runs a program of the consumers' own in a folder of theirs. */
 const build = (name, ...program) =>
-  run(process.execPath, program.map((word) => word.replace(/^bin:/, fileURLToPath(new URL('node_modules', CONSUMERS)))), { cwd: fileURLToPath(folder(name)), env: ENVIRONMENT });
+  run(process.execPath, program.map((word) => word.replace(/^bin:/, fileURLToPath(folder('node_modules')))), { cwd: fileURLToPath(folder(name)), env: ENVIRONMENT });
 
 await install((await pack({ after })).file);
 

@@ -160,3 +160,20 @@ impl Times {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switches_without_end_are_an_error() {
+        // Ones decode to the last symbol for ever: a switch.
+        let ones = vec![0xff; 1 << 16];
+        let mut decoder = ArithmeticDecoder::new(&ones[..]);
+        decoder.read_init_bytes().unwrap();
+        let error = Times::default()
+            .decompress_with(&mut decoder, &mut [0; 8])
+            .unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::InvalidData, "{error}");
+    }
+}
