@@ -19,6 +19,7 @@ use js_sys::{
 };
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
 
 /// Builds the pool of `threads` workers; blocks until as many have called `lendThread`. `pkg/hosts.js` starts them.
@@ -334,13 +335,6 @@ fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
         expected: expected.into(),
         found: found.to_string(),
     }
-}
-
-fn format_named(name: &str) -> Result<Format, Error> {
-    Format::WRITTEN
-        .into_iter()
-        .find(|format| format.name() == name)
-        .ok_or_else(|| bad_option("format", "ply or xyz", name))
 }
 
 /// A report or table as a plain object.
