@@ -22,6 +22,7 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
   const hash = () => page.evaluate(() => location.hash);
   const stages = () => page.$$eval('#stages data', (rows) => rows.map((row) => row.dataset.stage));
   const count = bowl.length;
+  let mesh;
 
   await t.test('numbers: what came out of how much', async () => {
     assert.equal(await site.number('outputPoints'), Math.round(count / 4));
@@ -155,6 +156,24 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     const saved = page.waitForEvent('download');
     await page.click('#save');
     assert.equal((await saved).suggestedFilename(), 'bowl-mesh.glb');
+    mesh = await readFile(await (await saved).path());
+  });
+
+  await t.test('the snippet shows the saved mesh in another page', async () => {
+    const body = await page.inputValue('#share-embed');
+    const answer = async (route) => {
+      const { pathname } = new URL(route.request().url());
+      const html = `<!doctype html><title>own</title><link rel="icon" href="data:,">${body}`;
+      if (pathname === '/own.html') return route.fulfill({ contentType: 'text/html', body: html });
+      if (pathname === '/bowl-mesh.glb') return route.fulfill({ body: mesh });
+      const [, name, path] = /^\/node_modules\/(pointweave|three)\/(.*)$/.exec(pathname);
+      const folder = name === 'three' ? '../node_modules/three/' : '../../pkg/';
+      return route.fulfill({ contentType: 'text/javascript', body: await readFile(new URL(folder + path, import.meta.url)) });
+    };
+    const own = await server.open({ serviceWorkers: 'block' }, (opened) => opened.route('**/*', answer), 'own.html');
+    await own.page.waitForFunction(() => document.querySelector('point-weave').loaded, null, { timeout: PATIENCE });
+    assert.deepEqual(own.faults, []);
+    assert.equal(await own.page.getAttribute('point-weave', 'alt'), 'bowl.ply, a 3D model');
   });
 
   assert.deepEqual(site.faults, []);

@@ -41,6 +41,12 @@ test('addresses and the clipboard', { timeout: PATIENCE }, async (t) => {
   await paste('text', 'Dear Sir or Madam');
   assert.equal(await page.getAttribute('#app', 'data-state'), 'ready', 'a letter is no scan');
 
+  const holes = `ply\nformat ascii 1.0\nelement vertex 902\nproperty float x\nproperty float y\nproperty float z\nend_header\n${
+    toXyz(spherePoints(900)).toString()}\nnan nan nan\n0 inf 0\n`;
+  await site.drop('holes.ply', Buffer.from(holes));
+  await site.opened('holes.ply');
+  assert.equal(await page.innerText('#caption-detail'), '900 points, 2 without a place left out');
+
   // A sample that the address names, and one that it is changed to.
   await page.evaluate(() => (location.hash = '#sample=part&count=500'));
   await site.opened('Machined part');

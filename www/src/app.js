@@ -108,7 +108,7 @@ export class App {
     for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === scan.model);
     document.title = `${scan.title} · Pointweave`;
     byId('caption-title', HTMLElement).textContent = scan.title;
-    byId('caption-detail', HTMLElement).textContent = `${scan.model ? 'simulated scan, ' : ''}${format.count(scan.count)} points`;
+    byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
     byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
     this.#look.opened(scan);
     this.#numbers.opened(scan.count);
@@ -174,4 +174,11 @@ export class App {
   #samples() {
     return /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-sample]'));
   }
+}
+
+/** What a scan holds, and what of its file was no point. */
+function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
+  const dropped = cloud.file?.dropped ?? 0;
+  const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
+  return `${model ? 'simulated scan, ' : ''}${format.count(count)} points${rest}`;
 }

@@ -3,7 +3,7 @@ import { saveFile } from './files.js';
 import * as format from './format.js';
 
 /**
- * @import { Format } from 'pointweave'
+ * @import { OutputFormat } from 'pointweave'
  * @import { Outcome, Session } from './session.js'
  * @typedef {'mesh' | 'reduced'} What
  */
@@ -109,7 +109,7 @@ export class Saving {
     const key = `${what} ${name}`;
     let file = this.#files.get(key);
     if (!file) {
-      file = this.#session.file(what, /** @type {Format} */ (name)).then(
+      file = this.#session.file(what, /** @type {OutputFormat} */ (name)).then(
         (bytes) => new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)], { type: 'application/octet-stream' }),
         (error) => {
           if (error?.code !== 'bad-option') this.#fail(error, name.toUpperCase());

@@ -5,14 +5,15 @@ import { SAMPLES } from './samples.js';
 import { Settings, TARGETS } from './settings.js';
 
 /**
- * @import { PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { FileCloud, PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
  * @import { Frame } from './frame.js'
  * @import { SampleName } from './samples.js'
  * @import { Target } from './settings.js'
  *
  * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
  * @typedef {{ title: string, file: string, model?: SampleName, src?: string }} Source
- * @typedef {Source & { cloud: PointCloud, count: number, frame: Frame }} Scan
+ * @typedef {PointCloud & Partial<Pick<FileCloud, 'file'>>} Opened
+ * @typedef {Source & { cloud: Opened, count: number, frame: Frame }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
@@ -144,7 +145,7 @@ export class Session extends EventTarget {
   /**
    * The bytes of a file of what was made.
    * @param {'reduced' | 'mesh'} what
-   * @param {import('pointweave').Format} format
+   * @param {import('pointweave').OutputFormat} format
    */
   async file(what, format) {
     const result = this.outcome?.[what];
@@ -154,7 +155,7 @@ export class Session extends EventTarget {
 
   /**
    * @param {Source} source
-   * @param {(signal: AbortSignal) => Promise<PointCloud>} load
+   * @param {(signal: AbortSignal) => Promise<Opened>} load
    */
   async #open(source, load) {
     const job = this.#begin('reading');

@@ -33,8 +33,18 @@ export class Sharing {
   }
 }
 
+/** A page without a bundler needs to be told where the packages are; after `npm install pointweave three` they are there. */
+const IMPORTS = `<script type="importmap">
+{ "imports": {
+  "pointweave/element": "/node_modules/pointweave/element.js",
+  "three": "/node_modules/three/build/three.module.js",
+  "three/addons/": "/node_modules/three/examples/jsm/"
+} }
+</script>
+<script type="module">import 'pointweave/element';</script>
+`;
+
 function snippet(/** @type {string} */ file, /** @type {string} */ title) {
   const text = (/** @type {string} */ words) => words.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-  return '<script type="module" src="pointweave/element.js"></script>\n'
-    + `<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model" controls></point-weave>`;
+  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model" controls></point-weave>`;
 }

@@ -83,6 +83,11 @@ export const WORDS = {
     text: 'Points without triangles cannot be saved in it.',
     advice: 'Choose another format.',
   },
+  'no-webgl': {
+    title: 'The picture cannot be drawn',
+    text: 'This browser offers no WebGL 2, which the picture needs.',
+    advice: 'Turn on hardware acceleration in the settings, or use another browser.',
+  },
   'missing-package': {
     title: 'A part of the program is missing',
     text: 'The page was built without something that this needs.',
