@@ -88,11 +88,11 @@ test('an attribute that the cloud does not have is named, with those that it has
 });
 
 test('undefined means not given', async () => {
-  const given = await reduce(cloud, { target: undefined, seed: undefined, signal: undefined   const nested = await reconstruct(cloud, { reduce: { target: { ratio: 0.5, count: undefined }, norm: undefined } });
-  assert.deepEqual(nested.positions, (await reconstruct(cloud, { reduce: { target: { ratio: 0.5 } } })).positions);
-});
+  const given = await reduce(cloud, { target: undefined, seed: undefined, signal: undefined });
   const bare = await reduce(cloud);
   assert.deepEqual(given.positions, bare.positions);
+  const nested = await reconstruct(cloud, { reduce: { target: { ratio: 0.5, count: undefined }, norm: undefined } });
+  assert.deepEqual(nested.positions, (await reconstruct(cloud, { reduce: { target: { ratio: 0.5 } } })).positions);
 });
 
 /** A wasm instance without the checks of the package in front. */
