@@ -286,7 +286,7 @@ test('thirty on one page share one context; each shows its own', async () => {
   for (let i = 0; i < 24; i += 5) assert.equal(color(await shown.picture(`#b${i}`)), names[i % 3]);
   for (let i = 0; i < 6; i++) assert.notEqual(color(await shown.picture(`#s${i}`)), 'nothing');
   assert.equal((await shown.events()).filter(({ type }) => type === 'load').length, 30);
-  assert.equal(shown.workers, 1, 'one engine computes all scans');
+  assert.equal(shown.page.workers().length, 1, 'one engine computes all scans; readers have ended');
   await shown.keep('thirty');
   assert.deepEqual(shown.faults, []);
 });

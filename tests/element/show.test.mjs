@@ -138,12 +138,16 @@ test('threads, where the page is isolated; one engine for all that want as many'
   await shown.loaded();
   const loads = (await shown.events()).filter(({ type }) => type === 'load').sort((a, b) => a.src.localeCompare(b.src));
   assert.deepEqual(loads.map(({ report: { build, threads } }) => [build, threads]), [['threads', 2], ['threads', 2], ['single', 1]]);
-  assert.equal(shown.workers, 1 + 2 + 1, 'one that computes, two that lend their threads, and one alone');
+  assert.equal(shown.page.workers().length, 1 + 2 + 1, 'one that computes, two that lend their threads, and one alone');
 });
 
 test('wasm files elsewhere', async () => {
-  site.put('/elsewhere/single/pointweave_bg.wasm', await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)));
-  const shown = await site.open('<point-weave src="/duck.ply" view="points" alt="A duck"></point-weave>', {
+  const builds = ['files', 'single'];
+  for (const build of builds) {
+    const file = `${build}/pointweave_bg.wasm`;
+    site.put(`/elsewhere/${file}`, await readFile(new URL(`../../pkg/wasm/${file}`, import.meta.url)));
+  }
+  const shown = await site.open('<point-weave src="/duck.ply" view="reduced" alt="A duck"></point-weave>', {
     define: false,
     prepare: (page) => page.addInitScript(() => addEventListener('DOMContentLoaded', async () => {
       const { PointWeaveElement } = await import('/pointweave/element/element.js');
@@ -152,7 +156,7 @@ test('wasm files elsewhere', async () => {
     })),
   });
   await shown.loaded();
-  assert.deepEqual(shown.asked.filter((path) => path.endsWith('.wasm')), ['/elsewhere/single/pointweave_bg.wasm']);
+  assert.deepEqual(shown.asked.filter((path) => path.endsWith('.wasm')).sort(), builds.map((build) => `/elsewhere/${build}/pointweave_bg.wasm`));
 });
 
 test('a textured GLB keeps its picture', async (t) => {

@@ -153,9 +153,6 @@ class Opened {
     this.faults = [];
     /** Paths that were asked for. */
     this.asked = [];
-    /** How many were started. */
-    this.workers = 0;
-    page.on('worker', () => this.workers++);
     page.on('pageerror', (error) => this.faults.push(String(error)));
     page.on('console', (message) => message.type() === 'error' && !/Failed to load resource/.test(message.text()) && this.faults.push(message.text()));
     page.on('request', (request) => this.asked.push(request.url().replace(address, '')));
