@@ -83,7 +83,9 @@ pub mod report;
 pub mod distance;
 pub mod height_field;
 
-// The top: the stages in order.
+// The top: what the stages start from, the stages in order.
+mod clock;
+mod input;
 pub mod pipeline;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.

@@ -2,6 +2,7 @@
 
 use crate::attach::attach;
 use crate::cells::{self, Sites};
+use crate::clock::Clock;
 use crate::cloud::{Attribute, Cloud};
 use crate::distance::{mesh_distances, vertex_distances};
 use crate::error::{Error, Result};
@@ -10,19 +11,18 @@ use crate::features::{self, Features};
 use crate::field::Field;
 use crate::fit;
 use crate::height_field::{Patches, cloud_distances};
+use crate::input::{Input, Origin, measure};
 use crate::noise::{Scales, quantile};
 use crate::octree::Octree;
 use crate::orient;
-use crate::outliers;
 use crate::par;
 use crate::params::{COLORS, Outliers, ReduceParams, Resolution, SurfaceParams, Target};
-use crate::progress::{Part, Progress, Stage};
+use crate::progress::Progress;
 use crate::reduce::{self, Reduced};
-use crate::report::{self, DistanceStats, ReduceReport, StageTimes, SurfaceReport};
+use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use serde::Serialize;
 use std::borrow::Cow;
-use web_time::Instant;
 
 /// A reduced cloud and what its reduction did.
 #[derive(Debug, Clone)]
@@ -418,154 +418,6 @@ pub fn inspect(positions: &[f64], progress: &mut dyn Progress) -> Result<CloudIn
     })
 }
 
-/// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
-/// as a scanner knows more than neighbours tell.
-fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
-    progress.update(Stage::Octree, 0.0)?;
-    let tree = Octree::build(&cloud.points);
-    progress.update(Stage::Octree, 1.0)?;
-    let mut features = Features::measure(&tree, progress)?;
-    if let Some(normals) = &cloud.normals {
-        for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
-            let own = normals[i as usize];
-            *normal = if own == Vec3::ZERO { *normal } else { own };
-        }
-    }
-    Ok((tree, features))
-}
-
-/// What a reduction is made of: the caller's points, or those that are not isolated.
-#[derive(Debug)]
-struct Input<'a> {
-    /// Without points where nobody else owns them: the tree has them.
-    cloud: Cow<'a, Cloud>,
-    tree: Octree,
-    features: Features,
-    origin: Origin,
-}
-
-/// Where the points of an [`Input`] come from.
-#[derive(Debug, Clone)]
-struct Origin {
-    /// Points that the caller gave.
-    given: usize,
-    /// The caller's index of each point, where some were dropped.
-    kept: Option<Vec<u32>>,
-    /// Why nothing was dropped although much is isolated; else empty.
-    reason: String,
-}
-
-impl<'a> Input<'a> {
-    fn new(
-        cloud: Cow<'a, Cloud>,
-        outliers: Outliers,
-        progress: &mut dyn Progress,
-    ) -> Result<Input<'a>> {
-        let origin = |kept, reason| Origin {
-            given: cloud.len(),
-            kept,
-            reason,
-        };
-        if outliers == Outliers::Keep {
-            let origin = origin(None, String::new());
-            let measured = measure(&cloud, progress)?;
-            return Ok(Input::of(cloud, measured, origin));
-        }
-        // Two measurements with the search between them.
-        let (tree, features) = measure(&cloud, &mut Part::new(progress, 0.0..0.4))?;
-        let isolated =
-            outliers::isolated(&tree, features.noise, &mut Part::new(progress, 0.4..0.6))?;
-        let dropped = isolated.iter().filter(|&&is| is).count();
-        if dropped == 0 || 2 * dropped > cloud.len() {
-            let reason = match dropped {
-                0 => String::new(),
-                _ => format!("{dropped} points, more than half, are isolated: none was dropped"),
-            };
-            let origin = origin(None, reason);
-            return Ok(Input::of(cloud, (tree, features), origin));
-        }
-        let mut kept: Vec<u32> = tree
-            .order
-            .iter()
-            .zip(isolated)
-            .filter(|&(_, is)| !is)
-            .map(|(&i, _)| i)
-            .collect();
-        kept.sort_unstable();
-        let rest = cloud.select(&kept)?;
-        let origin = origin(Some(kept), String::new());
-        drop((cloud, tree, features));
-        let measured = measure(&rest, &mut Part::new(progress, 0.6..1.0))?;
-        Ok(Input::of(Cow::Owned(rest), measured, origin))
-    }
-
-    fn of(
-        mut cloud: Cow<'a, Cloud>,
-        (tree, features): (Octree, Features),
-        origin: Origin,
-    ) -> Input<'a> {
-        if let Cow::Owned(cloud) = &mut cloud {
-            cloud.points = Vec::new();
-        }
-        Input {
-            cloud,
-            tree,
-            features,
-            origin,
-        }
-    }
-}
-
-impl Input<'_> {
-    /// Whether this was measured of these very points, colours and whatever else there is.
-    fn is_of(&self, cloud: &Cloud) -> bool {
-        let Cloud {
-            points,
-            frame,
-            colors,
-            normals,
-            attributes,
-            origin,
-        } = cloud;
-        let (of, tree) = (&self.cloud, &self.tree);
-        let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
-        self.origin.kept.is_none()
-            && tree.points.len() == points.len()
-            && (of.frame, of.origin) == (*frame, *origin)
-            && tree.points.iter().zip(&tree.order).all(place)
-            && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
-    }
-}
-
-impl Origin {
-    /// How many points were dropped.
-    fn dropped(&self) -> usize {
-        self.kept.as_ref().map_or(0, |kept| self.given - kept.len())
-    }
-
-    /// The caller's index of a point of this cloud.
-    fn callers(&self, point: u32) -> u32 {
-        self.kept
-            .as_ref()
-            .map_or(point, |kept| kept[point as usize])
-    }
-
-    /// Indices of this cloud's points become the caller's.
-    fn restore(&self, reduced: &mut Reduced) {
-        let Some(kept) = &self.kept else { return };
-        for i in &mut reduced.nearest {
-            *i = kept[*i as usize];
-        }
-        if let Some(assignment) = &mut reduced.assignment {
-            let mut all = vec![outliers::DROPPED; self.given];
-            for (&i, &reduced) in kept.iter().zip(assignment.iter()) {
-                all[i as usize] = reduced;
-            }
-            *assignment = all;
-        }
-    }
-}
-
 /// Whether strays are dropped before a surface is made.
 fn outliers(params: &SurfaceParams) -> Outliers {
     let reduce = params.reduce.as_ref();
@@ -757,41 +609,5 @@ fn reduce_report(
             .collect::<Vec<_>>()
             .join("; "),
         ..Default::default()
-    }
-}
-
-/// Passes progress on and notes how long each stage took.
-struct Clock<'a> {
-    inner: &'a mut dyn Progress,
-    start: Instant,
-    last: Instant,
-    stage: Stage,
-    times: StageTimes,
-}
-
-impl<'a> Clock<'a> {
-    fn new(inner: &'a mut dyn Progress) -> Clock<'a> {
-        let now = Instant::now();
-        Clock {
-            inner,
-            start: now,
-            last: now,
-            stage: Stage::Octree,
-            times: StageTimes::default(),
-        }
-    }
-}
-
-impl Progress for Clock<'_> {
-    fn update(&mut self, stage: Stage, fraction: f32) -> Result<()> {
-        // What passed before a stage's first word belongs to the stage before.
-        if fraction > 0.0 {
-            self.stage = stage;
-        }
-        let now = Instant::now();
-        self.times
-            .add(self.stage, (now - self.last).as_secs_f64() * 1e3);
-        (self.last, self.stage) = (now, stage);
-        self.inner.update(stage, fraction)
     }
 }

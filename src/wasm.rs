@@ -1,5 +1,5 @@
-//! The pipeline from JavaScript; what reads files is `wasm_read`, what both need `js`. Typed arrays and one options object in, plain objects
-//! of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
+//! The pipeline from JavaScript; what reads files is `wasm_read`, what both need `js`. Typed arrays and one options object in,
+//! plain objects of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
 //! `pkg/` turns them into its `PointweaveError`.
 //!
 //! Every `progress` is a function `(stage, fraction) => stop` whose truthy answer, or exception, stops the job.
