@@ -37,6 +37,14 @@ fn pcd(fields: &str, sizes: &str, types: &str, data: &str) -> Vec<u8> {
     format!("# .PCD v0.7\nVERSION 0.7\nFIELDS {fields}\nSIZE {sizes}\nTYPE {types}\nWIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA {data}\n").into_bytes()
 }
 
+/// Each of these files breaks the rules at its line.
+fn breaks_at(format: Format, files: &[(&str, u64)]) {
+    for &(file, line) in files {
+        let found = failure(file.as_bytes(), format);
+        assert_eq!(found, ("bad-file", Some(line)), "{file}");
+    }
+}
+
 #[test]
 fn pcd_in_three_encodings_is_one_cloud() {
     let fields = ("label x y z rgb t", "1 4 4 4 4 8", "I F F F U F");
@@ -186,19 +194,16 @@ fn obj_has_vertices_with_or_without_colours_and_normals() {
             "{colors}"
         );
     }
-    for (file, line) in [
-        ("v 1 2\n", 1),
-        ("o a\nv 1 2 x\n", 2),
-        ("v 1 2 3 4 5\n", 1),
-        ("v 1 2 3\nvn 0 1\n", 2),
-        ("vt 0 0\n", 2),
-    ] {
-        assert_eq!(
-            failure(file.as_bytes(), Format::Obj),
-            ("bad-file", Some(line)),
-            "{file}"
-        );
-    }
+    breaks_at(
+        Format::Obj,
+        &[
+            ("v 1 2\n", 1),
+            ("o a\nv 1 2 x\n", 2),
+            ("v 1 2 3 4 5\n", 1),
+            ("v 1 2 3\nvn 0 1\n", 2),
+            ("vt 0 0\n", 2),
+        ],
+    );
     assert_eq!(
         failure(b"\xfe\xff\0v", Format::Obj),
         ("unsupported-file", None)
@@ -238,23 +243,20 @@ fn off_says_in_its_first_word_what_a_vertex_has() {
         assert_eq!(cloud.normals, normals.map(Vec::from), "{file}");
         assert_eq!((names(&cloud).len(), cloud.faces), (0, 1), "{file}");
     }
-    for (file, line) in [
-        ("", 1),
-        ("OF\n", 1),
-        ("OFF\n2\n", 2),
-        ("OFF\n2 1 0\n0 0 0\n", 4),
-        ("OFF\n2 1 0\n0 0 0\n1 2\n", 4),
-        ("OFF\n2 1 0\n0 0 x\n", 3),
-        ("OFF\n2 1 0\n0 0 0 1\n", 3),
-        ("COFF\n2 1 0\n0 0 0\n", 3),
-        ("OFF\n18446744073709551615 1 0\n0 0 0\n", 4),
-    ] {
-        assert_eq!(
-            failure(file.as_bytes(), Format::Off),
-            ("bad-file", Some(line)),
-            "{file}"
-        );
-    }
+    breaks_at(
+        Format::Off,
+        &[
+            ("", 1),
+            ("OF\n", 1),
+            ("OFF\n2\n", 2),
+            ("OFF\n2 1 0\n0 0 0\n", 4),
+            ("OFF\n2 1 0\n0 0 0\n1 2\n", 4),
+            ("OFF\n2 1 0\n0 0 x\n", 3),
+            ("OFF\n2 1 0\n0 0 0 1\n", 3),
+            ("COFF\n2 1 0\n0 0 0\n", 3),
+            ("OFF\n18446744073709551615 1 0\n0 0 0\n", 4),
+        ],
+    );
     assert_eq!(
         failure(b"OFF BINARY\n\0\0", Format::Off),
         ("unsupported-file", None)
