@@ -56,6 +56,8 @@ pub(crate) struct Vertex {
     pub(crate) normal: Vec3,
     /// Crossed edges of its loop: the quads around it, if none is left out.
     pub(crate) degree: u8,
+    /// The quads around it that are there.
+    pub(crate) quads: u8,
     /// On a crease.
     pub(crate) sharp: bool,
 }
@@ -72,11 +74,34 @@ pub(crate) struct Quad {
     pub(crate) filled: bool,
 }
 
+impl Vertex {
+    /// Whether the surface ends here.
+    pub(crate) fn is_at_end(&self) -> bool {
+        self.quads < self.degree
+    }
+}
+
 /// The dual mesh.
 pub(crate) struct Dual {
     /// In the order of the cells; those at the end of an open surface may have no quad.
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) quads: Vec<Quad>,
+}
+
+impl Dual {
+    /// Drops the quads that are not to `stay`.
+    pub(crate) fn retain(&mut self, mut stay: impl FnMut(&Quad) -> bool) {
+        let vertices = &mut self.vertices;
+        self.quads.retain(|quad| {
+            let stays = stay(quad);
+            if !stays {
+                for v in quad.vertices {
+                    vertices[v as usize].quads -= 1;
+                }
+            }
+            stays
+        });
+    }
 }
 
 /// Makes the dual mesh of the crossed cells.
@@ -104,6 +129,9 @@ pub(crate) fn build<F: Implicit>(
         || (),
         |k, ()| cells.quads(cells.order[k]),
     );
+    for v in quads.iter().flat_map(|quad| quad.vertices) {
+        vertices[v as usize].quads += 1;
+    }
     if sharp {
         let on_crease = creases::mark(&vertices, &quads);
         let mut done = 0;
@@ -288,6 +316,7 @@ impl<'a> Cells<'a> {
                     position: Vec3::ZERO,
                     normal: Vec3::ZERO,
                     degree,
+                    quads: 0,
                     sharp: false,
                 });
             }

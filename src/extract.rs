@@ -14,7 +14,7 @@ use crate::params::Boundary;
 use crate::progress::Progress;
 use crate::rims;
 use crate::simplify::simplify;
-use crate::trim::{decide_holes, degrees, drop_phantoms, split_bow_ties, summarise, trim_rims};
+use crate::trim::{Holes, decide_holes, drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
 /// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
@@ -121,11 +121,14 @@ pub fn extract<F: Implicit>(
         &mut span(progress, 0.0, 0.4),
     )?;
     let mut dual = build(field, lattice, params.sharp, &mut span(progress, 0.4, 0.75))?;
-    decide_holes(&mut dual, params.boundary);
+    let Holes {
+        filled,
+        closed,
+        open,
+    } = decide_holes(&mut dual, params.boundary);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points, reach);
-    let (filled, closed, open) = summarise(&dual);
     let Triangulated {
         mut mesh,
         on_crease,
@@ -154,22 +157,21 @@ struct Triangulated {
 
 /// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
 fn triangulate(dual: Dual) -> Triangulated {
-    let degree = degrees(&dual);
     let mut index = vec![u32::MAX; dual.vertices.len()];
-    let used = degree.iter().filter(|&&quads| quads > 0).count();
+    let used = dual.vertices.iter().filter(|v| v.quads > 0).count();
     let mut mesh = Mesh {
         vertices: Vec::with_capacity(used),
         normals: Vec::with_capacity(used),
         triangles: Vec::with_capacity(2 * dual.quads.len()),
     };
     let (mut on_crease, mut at_end) = (Vec::with_capacity(used), Vec::with_capacity(used));
-    let vertices = dual.vertices.iter().zip(degree).zip(&mut index);
-    for ((vertex, quads), index) in vertices.filter(|((_, quads), _)| *quads > 0) {
+    let vertices = dual.vertices.iter().zip(&mut index);
+    for (vertex, index) in vertices.filter(|(vertex, _)| vertex.quads > 0) {
         *index = mesh.vertices.len() as u32;
         mesh.vertices.push(vertex.position);
         mesh.normals.push(vertex.normal);
         on_crease.push(vertex.sharp);
-        at_end.push(quads < vertex.degree);
+        at_end.push(vertex.is_at_end());
     }
     for quad in &dual.quads {
         let [p, q, r, s] = quad.vertices.map(|v| index[v as usize]);

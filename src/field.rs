@@ -12,7 +12,7 @@ use crate::cells::Sites;
 use crate::extract::Implicit;
 use crate::fit::Fits;
 use crate::kernel::wendland;
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 use crate::local::LocalFit;
 use crate::neighborhood::Block;
 use crate::noise::quantile;
@@ -60,25 +60,10 @@ const INSIDE: f64 = 0.75;
 /// See [`ASKED`].
 const MOST_INSIDE: f64 = 0.95;
 
-/// Memory of one evaluating worker.
-#[derive(Debug, Default, Clone)]
-pub struct Scratch {
-    points: Vec<Vec3>,
-    parts: Vec<Part>,
-}
-
-/// W_i of one sub-domain at eight positions, and its gradient.
-#[derive(Debug, Clone)]
-struct Part {
+/// W_i of one sub-domain at eight positions, and for N = 4 its gradient behind it.
+struct Part<const N: usize> {
     subdomain: u32,
-    weight: Lanes,
-    gradient: [Lanes; 3],
-}
-
-/// F and ∇F at eight positions; NaN where no sub-domain reaches.
-struct Blended {
-    value: Lanes,
-    gradient: [Lanes; 3],
+    weight: [Lanes; N],
 }
 
 impl<'a> Field<'a> {
@@ -135,8 +120,8 @@ impl<'a> Field<'a> {
         inside.count() as f64 > MOST_INSIDE * asked.count() as f64
     }
 
-    /// W_i and its gradient of every sub-domain that reaches one of a block's positions, by sub-domain.
-    fn weights(&self, block: &Block, parts: &mut Vec<Part>) {
+    /// The parts of every sub-domain that reaches one of a block's positions, by sub-domain.
+    fn weights<const N: usize>(&self, block: &Block, parts: &mut Vec<Part<N>>) {
         parts.clear();
         self.tree.visit(
             |id, node| {
@@ -152,20 +137,16 @@ impl<'a> Field<'a> {
                 let length = (dx * dx + dy * dy + dz * dz).sqrt();
                 let (weight, slope) = wendland(length * Lanes::splat(1.0 / r));
                 let slope = slope * Lanes::splat(1.0 / (r * r));
-                let gradient = [slope * dx, slope * dy, slope * dz];
+                let terms = [weight, slope * dx, slope * dy, slope * dz];
+                let weight = std::array::from_fn(|k| terms[k]);
                 let subdomain = self.owner[i];
                 match parts.iter_mut().find(|part| part.subdomain == subdomain) {
                     Some(part) => {
-                        part.weight += weight;
-                        for (sum, term) in part.gradient.iter_mut().zip(gradient) {
+                        for (sum, term) in part.weight.iter_mut().zip(weight) {
                             *sum += term;
                         }
                     }
-                    None => parts.push(Part {
-                        subdomain,
-                        weight,
-                        gradient,
-                    }),
+                    None => parts.push(Part { subdomain, weight }),
                 }
             },
         );
@@ -173,32 +154,30 @@ impl<'a> Field<'a> {
         parts.sort_unstable_by_key(|part| part.subdomain);
     }
 
-    /// F(x) and ∇F(x) at a block's positions.
-    fn blend(&self, block: &Block, parts: &mut Vec<Part>) -> Blended {
+    /// F(x) at a block's positions, and for N = 4 ∇F(x) behind it; NaN where no sub-domain reaches.
+    fn blend<const N: usize>(&self, block: &Block, parts: &mut Vec<Part<N>>) -> [Lanes; N] {
         self.weights(block, parts);
-        let mut total = [Lanes::ZERO; 4];
-        let mut sum = [Lanes::ZERO; 4];
-        for part in parts.iter() {
-            let s = part.subdomain as usize;
-            let (w, dw) = (part.weight, part.gradient);
+        let (mut total, mut sum) = ([Lanes::ZERO; N], [Lanes::ZERO; N]);
+        for Part { subdomain, weight } in parts.iter() {
+            let s = *subdomain as usize;
             let sign = Lanes::splat(self.signs[s]);
-            let (f, df) = self.functions[s].evaluate(block.at);
-            let (f, w_sign) = (f * sign, w * sign);
-            total[3] += w;
-            sum[3] += w * f;
-            for axis in 0..3 {
-                total[axis] += dw[axis];
-                sum[axis] += dw[axis] * f + df[axis] * w_sign;
+            let f: [Lanes; N] = self.functions[s].evaluate(block.at);
+            let (value, w_sign) = (f[0] * sign, weight[0] * sign);
+            total[0] += weight[0];
+            sum[0] += weight[0] * value;
+            for k in 1..N {
+                total[k] += weight[k];
+                sum[k] += weight[k] * value + f[k] * w_sign;
             }
         }
         // Below this the quotient is rounding; the next site is a whole reach away.
         let (one, least) = (Lanes::splat(1.0), Lanes::splat(1e-6));
-        let inverse = total[3].less(least, Lanes::splat(f32::NAN), one / total[3]);
-        let value = sum[3] * inverse;
-        Blended {
-            value: self.believed(block, value, total[3]),
-            gradient: [0, 1, 2].map(|axis| (sum[axis] - total[axis] * value) * inverse),
-        }
+        let inverse = total[0].less(least, Lanes::splat(f32::NAN), one / total[0]);
+        let value = sum[0] * inverse;
+        std::array::from_fn(|k| match k {
+            0 => self.believed(block, value, total[0]),
+            _ => (sum[k] - total[k] * value) * inverse,
+        })
     }
 
     /// The values of a block's positions without those that the winding number contradicts.
@@ -222,18 +201,18 @@ impl<'a> Field<'a> {
     }
 
     /// [`Field::blend`] of all positions, a block at a time: `of` gets the places of up to eight.
-    fn blend_all(
+    fn blend_all<const N: usize>(
         &self,
         at: &[DVec3],
-        scratch: &mut Scratch,
-        mut of: impl FnMut(Range<usize>, Blended),
+        points: &mut Vec<Vec3>,
+        mut of: impl FnMut(Range<usize>, [[f32; LANES]; N]),
     ) {
-        let Scratch { points, parts } = scratch;
         points.clear();
         points.extend(at.iter().map(|x| x.as_vec3()));
+        let mut parts = Vec::new();
         for block in Block::all(points, 0..points.len()) {
-            let blended = self.blend(&block, parts);
-            of(block.range, blended);
+            let blended = self.blend(&block, &mut parts);
+            of(block.range, blended.map(Lanes::to_array));
         }
     }
 
@@ -244,31 +223,27 @@ impl<'a> Field<'a> {
 }
 
 impl Implicit for Field<'_> {
-    type Scratch = Scratch;
+    /// Positions in single precision.
+    type Scratch = Vec<Vec3>;
 
-    fn scratch(&self) -> Scratch {
-        Scratch::default()
+    fn scratch(&self) -> Vec<Vec3> {
+        Vec::new()
     }
 
-    fn global(&self, at: DVec3, _: &mut Scratch) -> f64 {
+    fn global(&self, at: DVec3, _: &mut Vec<Vec3>) -> f64 {
         self.extension(at)
     }
 
-    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Scratch) {
-        self.blend_all(at, scratch, |places, blended| {
-            let value = blended.value.to_array();
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Vec<Vec3>) {
+        self.blend_all::<1>(at, scratch, |places, [value]| {
             for (k, value) in places.zip(value) {
                 values[k] = f64::from(value);
             }
         });
     }
 
-    fn gradients(&self, at: &[DVec3], found: &mut [Option<(f64, DVec3)>], scratch: &mut Scratch) {
-        self.blend_all(at, scratch, |places, blended| {
-            let (value, gradient) = (
-                blended.value.to_array(),
-                blended.gradient.map(Lanes::to_array),
-            );
+    fn gradients(&self, at: &[DVec3], found: &mut [Option<(f64, DVec3)>], scratch: &mut Vec<Vec3>) {
+        self.blend_all::<4>(at, scratch, |places, [value, gradient @ ..]| {
             for (l, k) in places.enumerate() {
                 let slope = Vec3::from_array(gradient.map(|g| g[l])).as_dvec3();
                 found[k] = (!value[l].is_nan()).then(|| (f64::from(value[l]), slope));

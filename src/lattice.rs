@@ -3,6 +3,7 @@
 //! Vertices and cells lie in bricks of 8³; cell (x, y, z) has its lowest corner at vertex (x, y, z). A brick holds 512
 //! values and a few sets of 512 bits, and knows its 26 neighbours, so that a step to an adjacent vertex is arithmetic.
 
+use crate::octree::interleave;
 use glam::{DVec3, IVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -188,7 +189,7 @@ impl Lattice {
         at.min_element() <= 0 || (self.size - at).min_element() <= 1
     }
 
-    /// Brick numbers by position (z, then y, then x): an order that does not depend on how the lattice grew.
+    /// Brick numbers in Morton order, which does not depend on how the lattice grew and keeps what is close together.
     pub(crate) fn order(&self) -> Vec<u32> {
         self.index.values().copied().collect()
     }
@@ -215,8 +216,7 @@ fn direction(p: IVec3) -> usize {
     (d.x + 3 * d.y + 9 * d.z) as usize
 }
 
-/// A brick's key: 21 bits an axis, of which bricks just outside of the lattice take the first value.
+/// A brick's key; bricks just outside of the lattice take the first value of an axis.
 fn key(at: IVec3) -> u64 {
-    let k = |x: i32| ((x >> 3) + 1) as u64;
-    k(at.z) << 42 | k(at.y) << 21 | k(at.x)
+    interleave(at.to_array().map(|x| ((x >> 3) + 1) as u64))
 }

@@ -33,76 +33,81 @@ pub(crate) struct Rbf {
 }
 
 impl Rbf {
-    fn evaluate(&self, at: [Lanes; 3]) -> (Lanes, [Lanes; 3]) {
+    /// f, and for N = 4 its gradient behind it.
+    fn evaluate<const N: usize>(&self, at: [Lanes; 3]) -> [Lanes; N] {
         let unit = Lanes::splat(1.0 / self.radius);
         let center = self.center.to_array();
         let q = [0, 1, 2].map(|axis| (at[axis] - Lanes::splat(center[axis])) * unit);
         let [l0, linear @ ..] = self.linear.map(Lanes::splat);
-        let (value, gradient) = match self.kernel {
+        let (sums, scale): ([Lanes; N], _) = match self.kernel {
             Kernel::Triharmonic => {
-                let three = Lanes::splat(3.0);
-                let (value, gradient) = self.sum(q, |r2| {
+                let sums = self.sum(q, |r2| {
                     let r = r2.sqrt();
                     (r2 * r, r)
                 });
-                (value, gradient.map(|g| g * three))
+                (sums, 3.0)
             }
-            kernel => self.sum(q, |r2| {
+            kernel => {
                 let of = |r2: f32| phi(kernel, f64::from(r2));
-                (r2.map(|r2| of(r2).0 as f32), r2.map(|r2| of(r2).1 as f32))
-            }),
+                let sums = self.sum(q, |r2| {
+                    (r2.map(|r2| of(r2).0 as f32), r2.map(|r2| of(r2).1 as f32))
+                });
+                (sums, 1.0)
+            }
         };
-        let value = value + l0 + linear[0] * q[0] + linear[1] * q[1] + linear[2] * q[2];
-        (
-            value * Lanes::splat(self.radius),
-            [0, 1, 2].map(|axis| gradient[axis] + linear[axis]),
-        )
+        std::array::from_fn(|k| match k {
+            0 => {
+                let value = sums[0] + l0 + linear[0] * q[0] + linear[1] * q[1] + linear[2] * q[2];
+                value * Lanes::splat(self.radius)
+            }
+            axis => sums[axis] * Lanes::splat(scale) + linear[axis - 1],
+        })
     }
 
-    /// Σ w φ and Σ w φ'/r (q − c), `phi` being φ and φ'/r of r².
+    /// Σ w φ, and for N = 4 behind it Σ w φ'/r (q − c), `phi` being φ and φ'/r of r².
     #[inline(always)]
-    fn sum(&self, q: [Lanes; 3], phi: impl Fn(Lanes) -> (Lanes, Lanes)) -> (Lanes, [Lanes; 3]) {
-        let mut sums = [Lanes::ZERO; 4];
+    fn sum<const N: usize>(
+        &self,
+        q: [Lanes; 3],
+        phi: impl Fn(Lanes) -> (Lanes, Lanes),
+    ) -> [Lanes; N] {
+        let mut sums = [Lanes::ZERO; N];
         for center in &self.centers {
             let [x, y, z, w] = center.map(Lanes::splat);
             let (dx, dy, dz) = (q[0] - x, q[1] - y, q[2] - z);
             let (value, slope) = phi(dx * dx + dy * dy + dz * dz);
             let slope = w * slope;
-            for (sum, term) in sums
-                .iter_mut()
-                .zip([w * value, slope * dx, slope * dy, slope * dz])
-            {
+            let terms = [w * value, slope * dx, slope * dy, slope * dz];
+            for (sum, term) in sums.iter_mut().zip(terms) {
                 *sum += term;
             }
         }
-        let [value, gradient @ ..] = sums;
-        (value, gradient)
+        sums
     }
 }
 
 impl LocalFit {
-    /// f in lengths of the unit frame at eight positions, and its gradient (about unit length near the surface).
-    pub fn evaluate(&self, at: [Lanes; 3]) -> (Lanes, [Lanes; 3]) {
-        let (mut value, mut gradient) = self.faces[0].evaluate(at);
+    /// f in lengths of the unit frame at eight positions, and for N = 4 behind it its gradient (about unit length near the
+    /// surface).
+    pub fn evaluate<const N: usize>(&self, at: [Lanes; 3]) -> [Lanes; N] {
+        let mut f: [Lanes; N] = self.faces[0].evaluate(at);
         for face in &self.faces[1..] {
-            let (other, slope) = face.evaluate(at);
+            let other: [Lanes; N] = face.evaluate(at);
             let (low, high) = if self.concave {
-                (other, value)
+                (other[0], f[0])
             } else {
-                (value, other)
+                (f[0], other[0])
             };
-            gradient = [0, 1, 2].map(|axis| low.less(high, slope[axis], gradient[axis]));
-            value = low.less(high, other, value);
+            f = std::array::from_fn(|k| low.less(high, other[k], f[k]));
         }
-        (value, gradient)
+        f
     }
 
     /// f and its gradient at every one of some positions.
     pub fn evaluate_all(&self, at: &[Vec3]) -> Vec<(f32, Vec3)> {
         let mut all = Vec::with_capacity(at.len());
         for block in Block::all(at, 0..at.len()) {
-            let (value, gradient) = self.evaluate(block.at);
-            let (value, gradient) = (value.to_array(), gradient.map(Lanes::to_array));
+            let [value, gradient @ ..] = self.evaluate::<4>(block.at).map(Lanes::to_array);
             let of = |l: usize| (value[l], Vec3::from_array(gradient.map(|g| g[l])));
             all.extend((0..LANES).map(of).take(block.range.len()));
         }

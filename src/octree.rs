@@ -403,7 +403,12 @@ fn insert(out: &mut Vec<Neighbor>, k: usize, n: Neighbor) {
 fn morton(p: Vec3) -> u64 {
     let cell =
         |x: f32| (((x as f64 + 0.5) * (1u64 << MAX_DEPTH) as f64) as u64).min((1 << MAX_DEPTH) - 1);
-    spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z))
+    interleave([cell(p.x), cell(p.y), cell(p.z)])
+}
+
+/// The Morton code of a cell: the 21 low bits of its coordinates, interleaved.
+pub(crate) fn interleave([x, y, z]: [u64; 3]) -> u64 {
+    spread(x) << 2 | spread(y) << 1 | spread(z)
 }
 
 /// Two zero bits behind each of the 21 low bits.

@@ -360,6 +360,22 @@ impl Sets {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b) as usize] = a.min(b);
     }
+
+    /// The number of each member's set, in the order of their least members, and how many sets there are.
+    pub(crate) fn numbered(self) -> (Vec<u32>, usize) {
+        let (mut of, mut count) = (self.0, 0);
+        for i in 0..of.len() {
+            // A link leads to a lesser member, which has its number already.
+            let up = of[i] as usize;
+            of[i] = if up == i {
+                count += 1;
+                count - 1
+            } else {
+                of[up]
+            };
+        }
+        (of, count as usize)
+    }
 }
 
 /// The three corners of a triangle.

@@ -28,54 +28,75 @@ const LAYER: f32 = 0.9;
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 1024;
 
-/// Components with what a decision about them rests on.
+/// A component with what a decision about it rests on.
+#[derive(Clone, Default)]
 struct Component {
     area: f64,
     filled: f64,
     has_boundary: bool,
 }
 
-/// Drops the filled quads of the components that are better left open, and components that are nothing but filling.
-pub(crate) fn decide_holes(dual: &mut Dual, boundary: Boundary) {
-    let (mut roots, components) = measure(dual);
-    dual.quads.retain(|quad| {
-        let component = &components[roots.find(quad.vertices[0]) as usize];
-        let share = component.filled / component.area;
-        let is_unclosed = component.has_boundary || share > MOST_FILLED;
-        !quad.filled || share < 1.0 && !(boundary == Boundary::Auto && is_unclosed)
-    });
+/// What [`decide_holes`] left.
+#[derive(Debug, Default)]
+pub(crate) struct Holes {
+    /// Share of the area that is filled (0-1).
+    pub(crate) filled: f64,
+    /// Components whose holes were closed.
+    pub(crate) closed: usize,
+    /// Components that are open.
+    pub(crate) open: usize,
 }
 
-/// Connected components, by the vertex that stands for them.
-fn measure(dual: &Dual) -> (Sets, Vec<Component>) {
-    let mut roots = components(dual);
-    let none = || Component {
-        area: 0.0,
-        filled: 0.0,
-        has_boundary: false,
-    };
-    let mut components: Vec<Component> = dual.vertices.iter().map(|_| none()).collect();
+/// Drops the filled quads of the components that are better left open, and components that are nothing but filling.
+pub(crate) fn decide_holes(dual: &mut Dual, boundary: Boundary) -> Holes {
+    let (of, components) = measure(dual);
+    let (mut holes, mut area, mut filled) = (Holes::default(), 0.0, 0.0);
+    let stays_closed: Vec<bool> = components
+        .iter()
+        .map(|c| {
+            let is_unclosed = c.has_boundary || c.filled > MOST_FILLED * c.area;
+            let stays_closed = c.filled < c.area && !(boundary == Boundary::Auto && is_unclosed);
+            if c.filled < c.area {
+                let kept = if stays_closed { c.filled } else { 0.0 };
+                filled += kept;
+                area += c.area - c.filled + kept;
+                let is_open = c.has_boundary || kept < c.filled;
+                holes.open += usize::from(is_open);
+                holes.closed += usize::from(kept > 0.0 && !is_open);
+            }
+            stays_closed
+        })
+        .collect();
+    dual.retain(|quad| !quad.filled || stays_closed[of[quad.vertices[0] as usize] as usize]);
+    holes.filled = if area > 0.0 { filled / area } else { 0.0 };
+    holes
+}
+
+/// The component of every vertex, and what is to be known of each.
+fn measure(dual: &Dual) -> (Vec<u32>, Vec<Component>) {
+    let (of, count) = components(dual);
+    let mut components = vec![Component::default(); count];
     for quad in &dual.quads {
-        let component = &mut components[roots.find(quad.vertices[0]) as usize];
+        let component = &mut components[of[quad.vertices[0] as usize] as usize];
         let area = quad_area(quad, &dual.vertices);
         component.area += area;
         component.filled += if quad.filled { area } else { 0.0 };
     }
-    for (v, degree) in degrees(dual).into_iter().enumerate() {
-        let component = &mut components[roots.find(v as u32) as usize];
-        component.has_boundary |= degree < dual.vertices[v].degree;
+    for (vertex, &c) in dual.vertices.iter().zip(&of) {
+        components[c as usize].has_boundary |= vertex.is_at_end();
     }
-    (roots, components)
+    (of, components)
 }
 
-fn components(dual: &Dual) -> Sets {
-    let mut roots = Sets::new(dual.vertices.len());
+/// The number of every vertex's connected component, and how many there are; a vertex without quads is one of its own.
+fn components(dual: &Dual) -> (Vec<u32>, usize) {
+    let mut sets = Sets::new(dual.vertices.len());
     for quad in &dual.quads {
         quad.vertices[1..]
             .iter()
-            .for_each(|&v| roots.join(quad.vertices[0], v));
+            .for_each(|&v| sets.join(quad.vertices[0], v));
     }
-    roots
+    sets.numbered()
 }
 
 fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
@@ -85,42 +106,18 @@ fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
     ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
 }
 
-/// Quads around each vertex.
-pub(crate) fn degrees(dual: &Dual) -> Vec<u8> {
-    let mut degrees = vec![0; dual.vertices.len()];
-    dual.quads
-        .iter()
-        .flat_map(|q| q.vertices)
-        .for_each(|v| degrees[v as usize] += 1);
-    degrees
-}
-
-/// What [`decide_holes`] left: share of the area that is filled, components that were closed, components that are open.
-pub(crate) fn summarise(dual: &Dual) -> (f64, usize, usize) {
-    let (_, components) = measure(dual);
-    let there: Vec<&Component> = components.iter().filter(|c| c.area > 0.0).collect();
-    let (area, filled) = there
-        .iter()
-        .fold((0.0, 0.0), |s, c| (s.0 + c.area, s.1 + c.filled));
-    let closed = there
-        .iter()
-        .filter(|c| c.filled > 0.0 && !c.has_boundary)
-        .count();
-    let open = there.iter().filter(|c| c.has_boundary).count();
-    (if area > 0.0 { filled / area } else { 0.0 }, closed, open)
-}
-
 /// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps
 /// of the sampling inside of the surface stay closed.
 pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
-    let mut degree = degrees(dual);
-    let is_end = |v: u32, degree: &[u8]| degree[v as usize] < dual.vertices[v as usize].degree;
-    let mut ends: Vec<u32> = (0..dual.vertices.len() as u32)
-        .filter(|&v| degree[v as usize] > 0 && is_end(v, &degree))
+    let vertices = dual.vertices.iter().enumerate();
+    let mut ends: Vec<u32> = vertices
+        .filter(|(_, vertex)| vertex.quads > 0 && vertex.is_at_end())
+        .map(|(v, _)| v as u32)
         .collect();
     if ends.is_empty() {
         return;
     }
+    let mut left: Vec<u8> = dual.vertices.iter().map(|vertex| vertex.quads).collect();
     let tree = Octree::build(points);
     let mut found = Vec::new();
     let mut is_far = |quad: &Quad| {
@@ -152,16 +149,16 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
             if !dropped[q as usize] && is_far(&dual.quads[q as usize]) {
                 dropped[q as usize] = true;
                 for v in dual.quads[q as usize].vertices {
-                    if !is_end(v, &degree) {
+                    if left[v as usize] == dual.vertices[v as usize].degree {
                         ends.push(v);
                     }
-                    degree[v as usize] -= 1;
+                    left[v as usize] -= 1;
                 }
             }
         }
     }
     let mut dropped = dropped.into_iter();
-    dual.quads.retain(|_| dropped.next() == Some(false));
+    dual.retain(|_| dropped.next() == Some(false));
 }
 
 /// Lists of quads by vertex.
@@ -178,8 +175,8 @@ impl Around {
 
 fn quads_around(dual: &Dual) -> Around {
     let mut start = vec![0u32];
-    start.extend(degrees(dual).iter().scan(0u32, |sum, &d| {
-        *sum += d as u32;
+    start.extend(dual.vertices.iter().scan(0u32, |sum, vertex| {
+        *sum += u32::from(vertex.quads);
         Some(*sum)
     }));
     let mut next = start.clone();
@@ -197,67 +194,69 @@ fn quads_around(dual: &Dual) -> Around {
 /// (the one with the most points stays), and second layers: pieces with an end that stand for less than [`LAYER_POINTS`] of
 /// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such.
 pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
-    let mut roots = components(dual);
-    let degree = degrees(dual);
-    let used: Vec<u32> = (0..degree.len() as u32)
-        .filter(|&v| degree[v as usize] > 0)
-        .collect();
-    let Some(&first) = used.first() else { return };
-    let root_of: Vec<u32> = used.iter().map(|&v| roots.find(v)).collect();
-    if root_of.iter().all(|&r| r == roots.find(first)) {
+    let (of, count) = components(dual);
+    let used = || {
+        let vertices = dual.vertices.iter().zip(&of);
+        vertices.filter(|(vertex, _)| vertex.quads > 0)
+    };
+    let Some((_, first)) = used().next() else {
+        return;
+    };
+    if used().all(|(_, component)| component == first) {
         return;
     }
-    let position = |&v: &u32| dual.vertices[v as usize].position;
-    let positions: Vec<Vec3> = used.iter().map(position).collect();
-    let votes = votes(&positions, &root_of, points, dual.vertices.len());
+    let (positions, component_of): (Vec<Vec3>, Vec<u32>) = used()
+        .map(|(vertex, &component)| (vertex.position, component))
+        .unzip();
+    let votes = votes(&positions, &component_of, points, count);
     let most = votes.iter().copied().max().unwrap_or(0);
     let least = LEAST_POINTS.min(most);
-    let mut has_end = vec![false; votes.len()];
-    for (&v, &root) in used.iter().zip(&root_of) {
-        has_end[root as usize] |= degree[v as usize] < dual.vertices[v as usize].degree;
+    let mut has_end = vec![false; count];
+    for (vertex, &component) in used() {
+        has_end[component as usize] |= vertex.is_at_end();
     }
     let mut dropped: Vec<bool> = votes.iter().map(|&points| points < least).collect();
     let (mut pieces, mut others) = (Vec::new(), Vec::new());
-    for (&p, &root) in positions.iter().zip(&root_of) {
-        let points = f64::from(votes[root as usize]);
-        if has_end[root as usize] && points < LAYER_POINTS * f64::from(most) {
-            pieces.push((root, p));
-        } else if !dropped[root as usize] {
+    for (&p, &component) in positions.iter().zip(&component_of) {
+        let points = f64::from(votes[component as usize]);
+        if has_end[component as usize] && points < LAYER_POINTS * f64::from(most) {
+            pieces.push((component, p));
+        } else if !dropped[component as usize] {
             others.push(p);
         }
     }
     if !pieces.is_empty() {
         let (others, tree) = (Octree::build(&others), Octree::build(points));
-        let away = |(root, p): (u32, Vec3)| {
+        let away = |(component, p): (u32, Vec3)| {
             let reach = reach[tree.order[tree.nearest(p).index as usize] as usize];
-            (root, others.nearest(p).distance2.sqrt() / reach)
+            (component, others.nearest(p).distance2.sqrt() / reach)
         };
         let mut away: Vec<(u32, f32)> = pieces.into_iter().map(away).collect();
         away.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         for piece in away.chunk_by(|a, b| a.0 == b.0) {
-            let (root, median) = piece[piece.len() / 2];
-            dropped[root as usize] |= median < LAYER;
+            let (component, median) = piece[piece.len() / 2];
+            dropped[component as usize] |= median < LAYER;
         }
     }
-    dual.quads
-        .retain(|quad| !dropped[roots.find(quad.vertices[0]) as usize]);
+    dual.retain(|quad| !dropped[of[quad.vertices[0] as usize] as usize]);
 }
 
-/// How many points each component is the nearest one to, by the vertex that stands for it.
-fn votes(positions: &[Vec3], root_of: &[u32], points: &[Vec3], vertices: usize) -> Vec<u32> {
+/// How many points each of `count` components is the nearest one to.
+fn votes(positions: &[Vec3], component_of: &[u32], points: &[Vec3], count: usize) -> Vec<u32> {
     let tree = Octree::build(positions);
     let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
     let nearest = par::map(
         tasks.len(),
         || (),
         |k, ()| {
-            let root = |&p: &Vec3| root_of[tree.order[tree.nearest(p).index as usize] as usize];
-            tasks[k].iter().map(root).collect::<Vec<u32>>()
+            let nearest =
+                |&p: &Vec3| component_of[tree.order[tree.nearest(p).index as usize] as usize];
+            tasks[k].iter().map(nearest).collect::<Vec<u32>>()
         },
     );
-    let mut votes = vec![0u32; vertices];
-    for root in nearest.into_iter().flatten() {
-        votes[root as usize] += 1;
+    let mut votes = vec![0u32; count];
+    for component in nearest.into_iter().flatten() {
+        votes[component as usize] += 1;
     }
     votes
 }
@@ -265,13 +264,11 @@ fn votes(positions: &[Vec3], root_of: &[u32], points: &[Vec3], vertices: usize) 
 /// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
 /// an open surface left some out there may be several.
 pub(crate) fn split_bow_ties(dual: &mut Dual) {
-    let degrees = degrees(dual);
-    let is_at_end = |v: u32| degrees[v as usize] < dual.vertices[v as usize].degree;
     // (vertex, next corner, previous corner, quad, place there) of the quads around vertices at the surface's end.
     let mut around = Vec::new();
     for (i, quad) in dual.quads.iter().enumerate() {
         let corner = |k: usize| quad.vertices[k % 4];
-        for k in (0..4).filter(|&k| is_at_end(corner(k))) {
+        for k in (0..4).filter(|&k| dual.vertices[corner(k) as usize].is_at_end()) {
             around.push((corner(k), corner(k + 1), corner(k + 3), i, k));
         }
     }
@@ -280,12 +277,18 @@ pub(crate) fn split_bow_ties(dual: &mut Dual) {
         let starts = fans.iter().filter(|a| fans.iter().all(|b| b.2 != a.1));
         for start in starts.skip(1) {
             let copy = dual.vertices.len() as u32;
-            dual.vertices.push(dual.vertices[start.0 as usize]);
+            let mut vertex = Vertex {
+                quads: 0,
+                ..dual.vertices[start.0 as usize]
+            };
             let mut member = Some(start);
             while let Some(&(_, _, previous, quad, k)) = member {
                 dual.quads[quad].vertices[k] = copy;
+                vertex.quads += 1;
                 member = fans.iter().find(|a| a.1 == previous);
             }
+            dual.vertices[start.0 as usize].quads -= vertex.quads;
+            dual.vertices.push(vertex);
         }
     }
 }
