@@ -1,4 +1,4 @@
-// Installed from the tarball, built with what people build with, and run in a browser: the same mesh everywhere.
+// Installed from the tarball, built with what people build with, and run in a browser: the same mesh everywhere, and elements that show it.
 
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
@@ -6,6 +6,7 @@ import { rm } from 'node:fs/promises';
 import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
+import { silhouette } from '../page/pictures.mjs';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
 import { CONSUMERS, install, pack } from './tarball.mjs';
 
@@ -22,19 +23,23 @@ await install((await pack({ after })).file);
 /** What Node says: all others have to say the same. */
 const expected = JSON.parse((await build('node', 'main.js')).stdout);
 
-/** @param {any} said by a page */
-function checkResult(said) {
-  assert.equal(said.error, undefined);
-  assert.deepEqual(said.hashes, expected.hashes);
-  assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
-}
-
-/** Opens a page and waits for what it has to say. */
-async function resultAt(t, address) {
+/** Opens a page, waits for what it has to say, and looks at what it shows. Gives the page. */
+async function check(t, address) {
   const page = await newPage(t);
   await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
-  return page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
+  const said = await page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
+  assert.equal(said.error, undefined);
+  assert.deepEqual(said.hashes, expected.hashes);
+  assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
+  const [{ triangles }] = said.shown;
+  assert.ok(triangles > 500);
+  assert.deepEqual(said.shown, [{ kind: 'scan', triangles }, { kind: 'glb', triangles }]);
+  for (const element of await page.locator('point-weave').all()) {
+    const { area } = silhouette(await element.screenshot({ animations: 'disabled' }));
+    assert.ok(area > 5000, `an element shows ${area} pixels`);
+  }
+  return page;
 }
 
 test('Node: every build and way gives one mesh', () => {
@@ -44,12 +49,12 @@ test('Node: every build and way gives one mesh', () => {
 });
 
 test('a module script with an import map', async (t) => {
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('importmap'), CONSUMERS])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('importmap'), CONSUMERS]));
 });
 
 test('Vite, built', async (t) => {
   await build('vite', 'bin:vite/bin/vite.js', 'build');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('vite/dist')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('vite/dist')]));
 });
 
 test('Vite, its development server', async (t) => {
@@ -64,7 +69,7 @@ test('Vite, its development server', async (t) => {
     });
     vite.once('exit', () => reject(new Error(said)));
   });
-  checkResult(await resultAt(t, address));
+  await check(t, address);
 });
 
 test('webpack', async (t) => {
@@ -72,16 +77,17 @@ test('webpack', async (t) => {
   const { default: config } = await import(new URL('webpack/webpack.config.js', CONSUMERS).href);
   const stats = await promisify(webpack)(config);
   assert.deepEqual([...stats.toJson().errors, ...stats.toJson().warnings].map(({ message }) => message), []);
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('webpack/dist'), folder('webpack')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('webpack/dist'), folder('webpack')]));
 });
 
 test('esbuild', async (t) => {
   await build('esbuild', 'build.js');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('esbuild/dist'), folder('esbuild')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('esbuild/dist'), folder('esbuild')]));
 });
 
 test('Next.js, rendered on the server and exported', async (t) => {
   await rm(folder('next/dist'), { recursive: true, force: true });
   await build('next', 'bin:next/dist/bin/next', 'build');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('next/dist')])));
+  const page = await check(t, await serveFolders(t, ISOLATED, [folder('next/dist')]));
+  await page.getByText(/^A duck of \d+ triangles\.$/).waitFor();
 });
