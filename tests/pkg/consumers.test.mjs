@@ -2,10 +2,11 @@
 
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
-import { rm } from 'node:fs/promises';
+import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
+import { read, sample, write } from 'pointweave';
 import { silhouette } from '../page/pictures.mjs';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
 import { CONSUMERS, install, pack } from './tarball.mjs';
@@ -23,22 +24,33 @@ await install((await pack({ after })).file);
 /** What Node says: all others have to say the same. */
 const expected = JSON.parse((await build('node', 'main.js')).stdout);
 
-/** Opens a page, waits for what it has to say, and looks at what it shows. Gives the page. */
-async function check(t, address) {
+/** Opens a page and waits for what it has to say. */
+async function open(t, address) {
   const page = await newPage(t);
   await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
   const said = await page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
   assert.equal(said.error, undefined);
+  return { page, said };
+}
+
+/** What each element of a page shows is not nothing. */
+async function checkPictures(page, name) {
+  for (const element of await page.locator(name).all()) {
+    const { area } = silhouette(await element.screenshot({ animations: 'disabled' }));
+    assert.ok(area > 5000, `${area} pixels are shown`);
+  }
+}
+
+/** Opens a page, and checks what it says and what it shows. */
+async function check(t, address) {
+  const { page, said } = await open(t, address);
   assert.deepEqual(said.hashes, expected.hashes);
   assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
   const [{ triangles }] = said.shown;
   assert.ok(triangles > 500);
   assert.deepEqual(said.shown, [{ kind: 'scan', triangles }, { kind: 'glb', triangles }]);
-  for (const element of await page.locator('point-weave').all()) {
-    const { area } = silhouette(await element.screenshot({ animations: 'disabled' }));
-    assert.ok(area > 5000, `an element shows ${area} pixels`);
-  }
+  await checkPictures(page, 'point-weave');
   return page;
 }
 
@@ -90,4 +102,19 @@ test('Next.js, rendered on the server and exported', async (t) => {
   await build('next', 'bin:next/dist/bin/next', 'build');
   const page = await check(t, await serveFolders(t, ISOLATED, [folder('next/dist')]));
   await page.getByText(/^A duck of \d+ triangles\.$/).waitFor();
+});
+
+test("<model-viewer> shows the command line's GLB", async (t) => {
+  const files = folder('model-viewer/dist');
+  await mkdir(files, { recursive: true });
+  await writeFile(new URL('scan.ply', files), await write(await sample('duck', { count: 3000, seed: 1 })));
+  await run('npx', ['--no-install', 'pointweave', 'reconstruct', 'scan.ply', '-o', 'mesh.glb'], { cwd: fileURLToPath(files) });
+  const { page, said } = await open(t, await serveFolders(t, {}, [folder('model-viewer'), files, CONSUMERS]));
+  const { positions } = await read(await readFile(new URL('mesh.glb', files)));
+  for (const [axis, length] of [said.x, said.y, said.z].entries()) {
+    const along = positions.filter((_, i) => i % 3 === axis);
+    const expected = Math.max(...along) - Math.min(...along);
+    assert.ok(Math.abs(length - expected) < 1e-4 * expected, `${length} and not ${expected} along axis ${axis}`);
+  }
+  await checkPictures(page, 'model-viewer');
 });
