@@ -37,6 +37,7 @@ export function parse(argv) {
   const [first, ...rest] = argv;
   if (first === '--version' || first === '-v') return { version: true };
   if (first === '--help' || first === '-h') return {};
+  if (first === 'help') return { help: COMMANDS.find((name) => name === rest[0]) };
   if (first === undefined) throw new UsageError('a command is needed: reduce, reconstruct or inspect');
   const command = COMMANDS.find((name) => name === first);
   if (!command) throw new UsageError(`there is no command '${first}'${hint(first, COMMANDS)}`);
@@ -65,7 +66,11 @@ function parseFlags(command, argv) {
 function explain({ code, message }, command, names) {
   const unknown = code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' && message.match(/'--?([^']+)'/);
   if (unknown) return `${command} has no option '${unknown[1]}'${hint(unknown[1], names, '--')}`;
-  return message.split('\n')[0];
+  const value = code === 'ERR_PARSE_ARGS_INVALID_OPTION_VALUE' && message.match(/--([\w-]+)/);
+  if (!value) return message;
+  const flag = `--${value[1]}`;
+  if (message.includes('does not take')) return `${flag} takes no value`;
+  return `${flag} needs a value${message.includes('ambiguous') ? `; one that begins with - is given as ${flag}=-…` : ''}`;
 }
 
 /** @param {string} word @param {string[]} names */
