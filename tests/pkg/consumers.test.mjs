@@ -27,10 +27,13 @@ const expected = JSON.parse((await build('node', 'main.js')).stdout);
 /** Opens a page and waits for what it has to say. */
 async function open(t, address) {
   const page = await newPage(t);
+  const elsewhere = [];
+  page.on('request', (request) => request.url().startsWith(address) || /^(data|blob):/.test(request.url()) || elsewhere.push(request.url()));
   await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
   const said = await page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
   assert.equal(said.error, undefined);
+  assert.deepEqual(elsewhere, [], 'nobody else is asked for anything');
   return { page, said };
 }
 

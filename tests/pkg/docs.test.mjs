@@ -104,6 +104,14 @@ for (const name of pages) {
     for (const [, target] of text.matchAll(/\]\((?!https?:)([^)#]+)/g)) await readFile(new URL(target, new URL(name, PACKAGE)));
   });
 
+  if (name === 'docs/errors.md') {
+    test('docs/errors.md: every code, and no other', async () => {
+      const types = await readFile(new URL('types.d.ts', PACKAGE), 'utf8');
+      const codes = /type ErrorCode =([^;]*);/.exec(types)[1].match(/(?<=')[a-z-]+/g);
+      assert.deepEqual([...text.matchAll(/^\| `([a-z-]+)` \|/gm)].map(([, code]) => code).sort(), codes.sort());
+    });
+  }
+
   let number = 0;
   for (const [, where, language, code] of text.matchAll(FENCED)) {
     if (OTHERS.includes(language) || (name === EMBED && language)) continue;
