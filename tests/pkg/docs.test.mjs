@@ -62,20 +62,21 @@ console.log = (what) => ArrayBuffer.isView(what) && (document.querySelector('out
 ${code}</script>`;
 
 /** Opens a page, gives it a file where it asks for one, and waits until it has something to say. */
-async function runInPage(t, html, routes = {}) {
+async function runInPage(t, html, routes = {}, headers = ISOLATED) {
   const page = await browser.newPage();
   t.after(() => page.close());
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
   await page.route('**/node_modules/pointweave/**', (route) => route.continue({ url: route.request().url().replace('/node_modules/', '/') }));
-  const address = await serve(t, ISOLATED, { '/': () => html, '/scan.ply': () => scan, '/favicon.ico': () => 'none', ...routes });
+  const address = await serve(t, headers, { '/': () => html, '/scan.ply': () => scan, '/favicon.ico': () => 'none', ...routes });
   await page.goto(address);
   const input = page.locator('input[type=file]');
   if (await input.count()) await input.setInputFiles({ name: 'scan.ply', mimeType: 'application/octet-stream', buffer: scan });
   const done = page.waitForFunction(() => document.querySelector('output')?.textContent, undefined, { timeout: 60_000 });
   await Promise.race([done, new Promise((_, reject) => page.once('pageerror', reject))]);
   assert.deepEqual(faults, []);
+  return page.locator('output').textContent();
 }
 
 /** Starts a snippet as the worker of a page, with another origin in the place of its CDN. */
@@ -89,16 +90,25 @@ async function runAsWorker(t, code) {
   await runInPage(t, page, { '/pointweave-worker.js': () => script });
 }
 
+/** Serves a page of no inline script with the headers: threads are there where it is isolated by them, and the engine works in any case. */
+async function runUnder(t, code) {
+  const headers = Object.fromEntries(code.trim().split('\n').map((line) => line.split(': ')));
+  const script = `import { createEngine } from '/node_modules/pointweave/index.js';
+    const engine = await createEngine({ threads: 2 });
+    const { report } = await engine.reduce(await engine.sample('duck', { count: 300 }));
+    document.querySelector('output').textContent = report.build;`;
+  const html = '<!doctype html><title>test</title><output></output><script type="module" src="/script.js"></script>';
+  const build = await runInPage(t, html, { '/script.js': () => script }, headers);
+  assert.equal(build, 'Cross-Origin-Embedder-Policy' in headers ? 'threads' : 'single');
+}
+
 /** The fenced blocks of a page, each with the comment before it. */
 const FENCED = /(?:<!-- (.*) -->\n)?```(\w*)\n([^]*?)```/g;
-/** What is no program, or none of this package. */
-const OTHERS = ['http', 'rust'];
-
 /** The pages of these have an element: `tests/element` opens them. */
 const EMBED = 'docs/embed.md';
-const pages = ['../README.md', 'README.md', ...(await readdir(new URL('docs/', PACKAGE))).map((name) => `docs/${name}`)];
-for (const name of pages) {
-  const text = await readFile(new URL(name, PACKAGE), 'utf8');
+const names = ['../README.md', 'README.md', ...(await readdir(new URL('docs/', PACKAGE))).map((name) => `docs/${name}`)];
+const pages = await Promise.all(names.map(async (name) => ({ name, text: await readFile(new URL(name, PACKAGE), 'utf8') })));
+for (const { name, text } of pages) {
 
   test(`${name}: links lead somewhere`, async () => {
     for (const [, target] of text.matchAll(/\]\((?!https?:)([^)#]+)/g)) await readFile(new URL(target, new URL(name, PACKAGE)));
@@ -114,9 +124,10 @@ for (const name of pages) {
 
   let number = 0;
   for (const [, where, language, code] of text.matchAll(FENCED)) {
-    if (OTHERS.includes(language) || (name === EMBED && language)) continue;
+    if (language === 'rust' || (name === EMBED && language)) continue;
     test(`${name}, snippet ${++number}`, async (t) => {
       if (!language) return runInShell(code);
+      if (language === 'http') return runUnder(t, code);
       if (where === 'in Node') return runInNode(code);
       if (where === 'in a page') return runInPage(t, language === 'html' ? code : asPage(code));
       if (where === 'in a page with a file input') return runInPage(t, withInput(code));
