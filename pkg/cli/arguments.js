@@ -26,6 +26,9 @@ import { UsageError } from './usage.js';
  * @property {string} [format] of the results
  */
 
+/** The format that a flag is for, and no other. */
+const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
+
 /** @type {Command[]} */
 const COMMANDS = ['reduce', 'reconstruct', 'inspect'];
 
@@ -96,7 +99,7 @@ function task(command, values, inputs) {
   const { out, 'out-dir': folder } = values;
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
-  checkCompression(write, format);
+  checkKind(write, format);
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
   if (shared.json) return { ...shared, jobs: inputs.map((input) => ({ input })) };
@@ -111,9 +114,9 @@ function formatFor(command, { out, format }) {
 }
 
 /** @param {Record<string, any>} write @param {string} format */
-function checkCompression(write, format) {
-  for (const name of ['quantize', 'meshopt']) {
-    if (write[name] && format !== 'glb') throw new UsageError(`--${name} is for GLB files`);
+function checkKind(write, format) {
+  for (const [name, only] of Object.entries(ONLY)) {
+    if (write[name] && format !== only) throw new UsageError(`--${name} is for ${only.toUpperCase()} files`);
   }
 }
 

@@ -105,7 +105,8 @@ async function perform(engine, { command, own, write, format }, { input, output 
 
 /** @param {Task} task @param {Outcome} outcome */
 function tell({ command, json }, outcome) {
-  const { input, output } = outcome;
+  const input = outcome.input === '-' ? 'standard input' : outcome.input;
+  const output = outcome.output === '-' ? 'standard output' : outcome.output;
   if ('error' in outcome) say(`${input}: ${sentence(outcome.error)}`);
   else if (json) return;
   else if (command === 'inspect') process.stdout.write(`${input}\n${outcome.text}`);

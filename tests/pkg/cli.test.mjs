@@ -137,6 +137,7 @@ test('standard input and standard output', async (t) => {
   const path = folder(t);
   const mesh = await good(path, ['reconstruct', '-', '-o', '-', '--format', 'glb', '--quantize'], scanFile);
   assert.deepEqual(mesh.stdout, Buffer.from(await write(await reconstruct(cloud), { format: 'glb', quantize: true })));
+  assert.match(mesh.stderr, /^pointweave: standard input → standard output: /);
   const light = await good(path, ['reduce', 'scan.ply', '-o', '-', '--encoding', 'ascii']);
   assert.match(String(light.stdout), /^ply\nformat ascii 1\.0\n/);
 });
@@ -213,6 +214,7 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', '-o', 'a.ply', '--attributes', 'label=median'], /attributes\.label is 'median'/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--threads', '0'], /--threads is '0': expected 'auto' or an integer from 1 to 64/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--quantize'], /--quantize is for GLB files/],
+    [['reduce', 'scan.ply', '-o', 'a.glb', '--encoding', 'ascii'], /--encoding is for PLY files/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--format', 'glb'], /has its extension/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--out-dir', 'b'], /exclude each other/],
     [['reduce', 'scan.ply', '-o', '-', '--json'], /both want standard output/],
