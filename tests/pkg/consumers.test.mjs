@@ -37,9 +37,11 @@ async function open(t, address) {
   return { page, said };
 }
 
-/** What each element of a page shows is not nothing. */
+/** There are elements of the name, and each shows something. */
 async function checkPictures(page, name) {
-  for (const element of await page.locator(name).all()) {
+  const elements = await page.locator(name).all();
+  assert.ok(elements.length > 0);
+  for (const element of elements) {
     const { area } = silhouette(await element.screenshot({ animations: 'disabled' }));
     assert.ok(area > 5000, `${area} pixels are shown`);
   }
