@@ -89,6 +89,8 @@ export class PointWeaveElement extends HTMLElement {
   static words: Words;
   /** As that of `createEngine`, for wasm files that are elsewhere. */
   static wasmUrl: EngineOptions['wasmUrl'];
+  /** As that of `createEngine`, where the worker's script is elsewhere. */
+  static workerUrl: EngineOptions['workerUrl'];
 
   /** A GLB, or a scan of a format that `read` takes. */
   src: string;

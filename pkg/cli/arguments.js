@@ -26,6 +26,9 @@ import { UsageError } from './usage.js';
  * @property {string} [format] of the results
  */
 
+/** The format that a flag is for, and no other. */
+const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
+
 /** @type {Command[]} */
 const COMMANDS = ['reduce', 'reconstruct', 'inspect'];
 
@@ -37,6 +40,7 @@ export function parse(argv) {
   const [first, ...rest] = argv;
   if (first === '--version' || first === '-v') return { version: true };
   if (first === '--help' || first === '-h') return {};
+  if (first === 'help') return { help: COMMANDS.find((name) => name === rest[0]) };
   if (first === undefined) throw new UsageError('a command is needed: reduce, reconstruct or inspect');
   const command = COMMANDS.find((name) => name === first);
   if (!command) throw new UsageError(`there is no command '${first}'${hint(first, COMMANDS)}`);
@@ -65,7 +69,11 @@ function parseFlags(command, argv) {
 function explain({ code, message }, command, names) {
   const unknown = code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' && message.match(/'--?([^']+)'/);
   if (unknown) return `${command} has no option '${unknown[1]}'${hint(unknown[1], names, '--')}`;
-  return message.split('\n')[0];
+  const value = code === 'ERR_PARSE_ARGS_INVALID_OPTION_VALUE' && message.match(/--([\w-]+)/);
+  if (!value) return message;
+  const flag = `--${value[1]}`;
+  if (message.includes('does not take')) return `${flag} takes no value`;
+  return `${flag} needs a value${message.includes('ambiguous') ? `; one that begins with - is given as ${flag}=-…` : ''}`;
 }
 
 /** @param {string} word @param {string[]} names */
@@ -91,7 +99,7 @@ function task(command, values, inputs) {
   const { out, 'out-dir': folder } = values;
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
-  checkCompression(write, format);
+  checkKind(write, format);
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
   if (shared.json) return { ...shared, jobs: inputs.map((input) => ({ input })) };
@@ -106,9 +114,9 @@ function formatFor(command, { out, format }) {
 }
 
 /** @param {Record<string, any>} write @param {string} format */
-function checkCompression(write, format) {
-  for (const name of ['quantize', 'meshopt']) {
-    if (write[name] && format !== 'glb') throw new UsageError(`--${name} is for GLB files`);
+function checkKind(write, format) {
+  for (const [name, only] of Object.entries(ONLY)) {
+    if (write[name] && format !== only) throw new UsageError(`--${name} is for ${only.toUpperCase()} files`);
   }
 }
 

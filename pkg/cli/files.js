@@ -1,6 +1,7 @@
 /** Files in, files out. A result is there whole or not at all. */
 import { randomUUID } from 'node:crypto';
-import { mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
+import { constants, openAsBlob } from 'node:fs';
+import { access, mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { addAbortSignal } from 'node:stream';
 import { buffer } from 'node:stream/consumers';
@@ -20,10 +21,20 @@ const MEANINGS = {
 /**
  * @param {string} input a path, or - for standard input
  * @param {AbortSignal} signal
- * @returns {Promise<Uint8Array>}
+ * @returns {Promise<Blob | Uint8Array>}
  */
-export function readInput(input, signal) {
-  return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : explained('', readFile(input, { signal }));
+export function openInput(input, signal) {
+  return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : explained('', open(input, signal));
+}
+
+/**
+ * A file stays on the disk, to be read slice by slice: it may be larger than memory. What is none (a device, a pipe) is taken whole.
+ * @param {string} path
+ * @param {AbortSignal} signal
+ */
+async function open(path, signal) {
+  await access(path, constants.R_OK);
+  return (await stat(path)).isFile() ? openAsBlob(path) : readFile(path, { signal });
 }
 
 /**

@@ -10,13 +10,18 @@ export const FORMATS = TABLES.write.format.names;
 /** The one that holds triangles alone. */
 const MESHES_ALONE = 'stl';
 
+/** @param {Command} command */
+function formatsOf(command) {
+  return FORMATS.filter((name) => command === 'reconstruct' || name !== MESHES_ALONE);
+}
+
 /**
  * @param {Command} command
  * @param {string} format
  * @param {string} what says it
  */
 export function checkFormat(command, format, what) {
-  const possible = FORMATS.filter((name) => command === 'reconstruct' || name !== MESHES_ALONE);
+  const possible = formatsOf(command);
   if (possible.includes(format)) return format;
   const names = possible.join(', ');
   throw new UsageError(
@@ -29,5 +34,7 @@ export function checkFormat(command, format, what) {
  * @param {string} file
  */
 export function formatOf(command, file) {
-  return checkFormat(command, extname(file).slice(1).toLowerCase(), `'${file}'`);
+  const extension = extname(file).slice(1).toLowerCase();
+  if (!extension) throw new UsageError(`'${file}' has no extension to say the format: expected ${formatsOf(command).join(', ')}`);
+  return checkFormat(command, extension, `'${file}'`);
 }

@@ -1,10 +1,11 @@
 /** Does what the command line asks for, one file after the other. */
 import { createEngine } from '../index.node.js';
+import { compressorFor } from '../compressor.js';
 import { PointweaveError, toRecord } from '../errors.js';
 import { Bar } from './bar.js';
-import { checkPlace, makeFolder, readInput, sameFile, sentence, writeOutput } from './files.js';
+import { checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { UsageError } from './usage.js';
-import { infoLines, reportLine } from './words.js';
+import { infoLines, pointsOf, reportLine } from './words.js';
 
 /** @import { Engine } from '../types.js' */
 /** @import { Job, Task } from './arguments.js' */
@@ -18,6 +19,7 @@ import { infoLines, reportLine } from './words.js';
  */
 export async function run(task, signal) {
   await checkOutputs(task.jobs);
+  await compressorFor(task.write.meshopt); // that its packages are missing is known before the work
   if (task.folder) await makeFolder(task.folder);
   // A worker in any case: this thread has to hear Ctrl-C.
   const engine = await createEngine({ threads: task.threads, worker: true });
@@ -82,10 +84,14 @@ async function perform(engine, { command, own, write, format }, { input, output 
   const { signal } = watch;
   if (output !== undefined && output !== '-') await checkPlace(output);
   const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await readInput(input, signal), { name, signal, transfer: true });
+  const cloud = await engine.read(await openInput(input, signal), { name, ...watch, transfer: true });
+  const { file } = cloud;
+  if (cloud.positions.length === 0 && file.dropped > 0) {
+    throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(file.dropped)}, none of them finite` });
+  }
   if (command === 'inspect') {
-    const report = await engine.inspect(cloud, watch);
-    return { report, text: infoLines(report, cloud) };
+    const info = await engine.inspect(cloud, watch);
+    return { report: { ...info, file }, text: infoLines(info, cloud) };
   }
   const result = await engine[command](cloud, { ...own, ...watch, transfer: true });
   const { report } = result;
@@ -94,12 +100,13 @@ async function perform(engine, { command, own, write, format }, { input, output 
     if (output === '-') await print(bytes);
     else await writeOutput(output, bytes, signal);
   }
-  return { report, text: reportLine(report) };
+  return { report, text: reportLine(report, file) };
 }
 
 /** @param {Task} task @param {Outcome} outcome */
 function tell({ command, json }, outcome) {
-  const { input, output } = outcome;
+  const input = outcome.input === '-' ? 'standard input' : outcome.input;
+  const output = outcome.output === '-' ? 'standard output' : outcome.output;
   if ('error' in outcome) say(`${input}: ${sentence(outcome.error)}`);
   else if (json) return;
   else if (command === 'inspect') process.stdout.write(`${input}\n${outcome.text}`);

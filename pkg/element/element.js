@@ -25,6 +25,8 @@ export class PointWeaveElement extends Reflecting {
   static words = WORDS;
   /** As that of `createEngine`, for files that are elsewhere. @type {EngineOptions['wasmUrl']} */
   static wasmUrl;
+  /** As that of `createEngine`. @type {EngineOptions['workerUrl']} */
+  static workerUrl;
 
   #parts = buildParts(this.attachShadow({ mode: 'open', delegatesFocus: true }));
   #panels = new Panels(this.#parts);
@@ -206,12 +208,12 @@ export class PointWeaveElement extends Reflecting {
     const { signal } = controller;
     /** @type {Job} */
     const job = (this.#job = { src, controller, share: 0, stage: 'fetch' });
+    const { wasmUrl, workerUrl } = PointWeaveElement;
     const work = {
       signal,
       onProgress: (/** @type {Stage} */ stage, /** @type {number} */ share) => this.#progress(job, stage, share),
       seen: () => this.#seen,
-      threads: this.threads,
-      wasmUrl: PointWeaveElement.wasmUrl,
+      engine: { threads: this.threads, wasmUrl, workerUrl },
     };
     this.#panels.begin();
     this.#speech.begin();

@@ -15,8 +15,7 @@ import { inTurn } from './turns.js';
  * @property {AbortSignal} signal
  * @property {(stage: Stage, share: number) => void} onProgress the share of the whole that is done
  * @property {() => boolean} seen
- * @property {'auto' | number} threads
- * @property {EngineOptions['wasmUrl']} wasmUrl
+ * @property {EngineOptions} engine
  */
 
 /** What share of the whole each part takes, about. */
@@ -59,7 +58,7 @@ export class Scan {
    * @param {Work} work
    */
   async make(view, target, work) {
-    const { signal, onProgress, seen, threads, wasmUrl } = work;
+    const { signal, onProgress, seen } = work;
     const before = this.#done;
     this.#done = 0;
     const options = {
@@ -67,7 +66,7 @@ export class Scan {
       onProgress: (/** @type {import('../types.js').Progress} */ { stage, overall }) => onProgress(stage, before + (1 - before) * overall),
     };
     await inTurn({ seen, signal }, async () => {
-      const engine = await sharedEngine(threads, wasmUrl);
+      const engine = await sharedEngine(work.engine);
       signal.throwIfAborted();
       if (view === 'reduced') {
         this.reduced = await engine.reduce(this.cloud, { target, ...options });
@@ -86,7 +85,7 @@ export class Scan {
  * @param {Work} work
  * @returns {Promise<Glb | Scan>}
  */
-export async function openSource(src, view, { signal, onProgress, threads, wasmUrl }) {
+export async function openSource(src, view, { signal, onProgress, engine: options }) {
   const likely = /\.glb$/i.test(nameOf(src)) ? 'glb' : view === 'points' ? 'points' : 'computed';
   onProgress('fetch', 0);
   const bytes = await fetchBytes(src, { signal, onProgress: (fraction) => onProgress('fetch', FETCHED[likely] * fraction) });
@@ -96,7 +95,7 @@ export async function openSource(src, view, { signal, onProgress, threads, wasmU
   }
   const kind = view === 'points' ? 'points' : 'computed';
   onProgress('read', FETCHED[kind]);
-  const engine = await sharedEngine(threads, wasmUrl);
+  const engine = await sharedEngine(options);
   signal.throwIfAborted();
   const cloud = await engine.read(bytes, {
     name: nameOf(src),

@@ -1,4 +1,4 @@
-/** What every page of these does with the package, and how it says what came out. */
+/** What Node and every page of these does with the package. */
 import { createEngine } from 'pointweave';
 import { load } from 'pointweave/core';
 
@@ -17,12 +17,6 @@ export async function job(options) {
   const core = await load({ wasmUrl: options?.wasmUrl });
   hashes.push(await hash(core.reconstruct(core.sample(scan.model, { count: scan.count, seed: scan.seed }))));
   return { hashes, reasons };
-}
-
-/** Writes the result into the page, where the test reads it. */
-export function show(promise) {
-  const write = (result) => (document.documentElement.dataset.result = JSON.stringify(result));
-  promise.then(write, (error) => write({ error: `${error.code}: ${error.message}` }));
 }
 
 async function hash({ positions, indices }) {

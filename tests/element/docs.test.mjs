@@ -63,3 +63,24 @@ test('every attribute, event, slot, part and custom property is documented', asy
   assert.ok(attributes.length >= 9 && parts.length > 15 && slots.length === 4 && properties.length > 8);
   for (const name of [...attributes, ...parts, ...slots, ...properties]) assert.ok(DOCUMENT.includes(`\`${name}\``), `${name} is in embed.md`);
 });
+
+test('every custom property that is documented changes what is seen', async () => {
+  const shown = await site.open('<point-weave src="/docs/duck.ply" alt="A toy duck" view="points" controls></point-weave>');
+  await shown.loaded();
+  const properties = [...new Set(DOCUMENT.match(/(?<=`)--point-weave-[a-z-]+(?=`)/g))];
+  const values = { '--point-weave-font': '20px serif', '--point-weave-poster-fit': 'cover' };
+  const idle = await shown.element().evaluate((element, wanted) => {
+    const parts = [...element.shadowRoot.querySelectorAll('*')];
+    for (const part of parts) part.style.transition = 'none';
+    const styles = () => parts.flatMap((part) => [...getComputedStyle(part)].map((name) => getComputedStyle(part).getPropertyValue(name))).join();
+    const before = styles();
+    return wanted.filter(([name, value]) => {
+      element.style.setProperty(name, value);
+      const changes = styles() !== before;
+      element.style.removeProperty(name);
+      return !changes;
+    });
+  }, properties.map((name) => [name, values[name] ?? 'rgb(1, 2, 3)']));
+  assert.ok(properties.length >= 11);
+  assert.deepEqual(idle, []);
+});

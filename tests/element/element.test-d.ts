@@ -8,7 +8,7 @@ type Written = typeof written.PointWeaveElement;
 type Own<Element> = Omit<Element, keyof HTMLElement>;
 
 /** The class has what is declared. */
-export function conform(element: InstanceType<Written>, made: Written): [Own<PointWeaveElement>, Pick<typeof PointWeaveElement, 'words' | 'wasmUrl'>] {
+export function conform(element: InstanceType<Written>, made: Written): [Own<PointWeaveElement>, Pick<typeof PointWeaveElement, 'words' | 'wasmUrl' | 'workerUrl'>] {
   return [element, made];
 }
 
@@ -23,6 +23,7 @@ export function use() {
   element.addEventListener('abort', ({ detail }) => console.log(detail.reason));
   element.addEventListener('click', (event) => event.clientX);
   PointWeaveElement.wasmUrl = 'https://example.org/wasm/';
+  PointWeaveElement.workerUrl = new URL('https://example.org/worker.js');
   PointWeaveElement.words = { ...PointWeaveElement.words, cancel: 'Abbrechen' };
   // @ts-expect-error no such view
   element.view = 'solid';

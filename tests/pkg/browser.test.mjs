@@ -58,6 +58,14 @@ test('wasm files elsewhere are found from the page', async (t) => {
   assert.match(lost, /nowhere\/single\/pointweave_bg\.wasm did not load: 404/);
 });
 
+test('threads that do not start leave the single-threaded build', async (t) => {
+  const page = await openPage(t);
+  const { build, reason, hashes } = await reconstructIn(page, { threads: 2, wasmUrl: { threads: 'nowhere.wasm' } });
+  assert.equal(build, 'single');
+  assert.match(reason, /^the threads build did not start: .*nowhere\.wasm did not load: 404/);
+  assert.deepEqual(hashes, await expectedHashes(t));
+});
+
 test('a strict content security policy is enough', async (t) => {
   const page = await openPage(t, { strict: true });
   for (const threads of [1, 2]) assert.equal((await reconstructIn(page, { threads })).threads, threads);

@@ -12,7 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { validateBytes } from 'gltf-validator';
 import { inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { parse } from '../../pkg/cli/arguments.js';
-import { writeOutput } from '../../pkg/cli/files.js';
+import { openInput, writeOutput } from '../../pkg/cli/files.js';
 import { WORDS } from '../../pkg/cli/help.js';
 import { UsageError } from '../../pkg/cli/usage.js';
 import { TABLES, TARGETS } from '../../pkg/options.js';
@@ -101,7 +101,7 @@ test('--json prints the report and nothing else', async (t) => {
   const alone = await good(path, ['reduce', 'scan.ply', '--json', '--ratio', '0.1']);
   assert.equal(JSON.parse(alone.stdout).outputPoints, 150);
   const info = await good(path, ['inspect', 'scan.ply', '--json']);
-  assert.deepEqual(JSON.parse(info.stdout), await inspect(cloud));
+  assert.deepEqual(JSON.parse(info.stdout), { ...(await inspect(cloud)), file: cloud.file });
 });
 
 test('inspect tells it in words', async (t) => {
@@ -111,10 +111,33 @@ test('inspect tells it in words', async (t) => {
   for (const said of [/^scan\.ply\n/, /points +1,500\n/, /not finite +0\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
 });
 
+test('what of a file is no point is told', async (t) => {
+  const path = folder(t);
+  const header = (count) => `ply\nformat ascii 1.0\nelement vertex ${count}\nproperty float x\nproperty float y\nproperty float z\nproperty float value\n`;
+  writeFileSync(join(path, 'some.ply'), `${header(5)}element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 nan\n0 1 0 1\nnan 0 0 1\n0 0 1 1\n3 0 1 2\n`);
+  writeFileSync(join(path, 'none.ply'), `${header(2)}end_header\n0 inf 0 1\nnan 0 0 1\n`);
+  const { stdout } = await good(path, ['inspect', 'some.ply']);
+  for (const said of [/points +4\n/, /not finite +1 more, left out\n/, /of that +1 not finite, taken for 0\n/, /faces +1, not read\n/]) assert.match(String(stdout), said);
+  const { stderr } = await good(path, ['reduce', 'some.ply', '-o', 'one.ply', '--count', '1']);
+  assert.match(stderr, /4 → 1 point, .* s; 1 point that is not finite left out\n$/);
+  const none = await run(path, ['reconstruct', 'none.ply', '-o', 'mesh.ply']);
+  assert.deepEqual([none.code, none.stderr], [1, 'pointweave: none.ply: the file has 2 points, none of them finite\n']);
+});
+
+test('a file is read from the disk slice by slice, whatever its size; a pipe is taken whole', async (t) => {
+  const path = folder(t);
+  const { signal } = new AbortController();
+  assert.ok((await openInput(join(path, 'scan.ply'), signal)) instanceof Blob);
+  assert.equal((await openInput('/dev/null', signal)).length, 0);
+  const error = await rejection(openInput(join(path, 'none.ply'), signal));
+  assert.equal(error.code, 'ENOENT');
+});
+
 test('standard input and standard output', async (t) => {
   const path = folder(t);
   const mesh = await good(path, ['reconstruct', '-', '-o', '-', '--format', 'glb', '--quantize'], scanFile);
   assert.deepEqual(mesh.stdout, Buffer.from(await write(await reconstruct(cloud), { format: 'glb', quantize: true })));
+  assert.match(mesh.stderr, /^pointweave: standard input → standard output: /);
   const light = await good(path, ['reduce', 'scan.ply', '-o', '-', '--encoding', 'ascii']);
   assert.match(String(light.stdout), /^ply\nformat ascii 1\.0\n/);
 });
@@ -155,6 +178,7 @@ test('what fails has exit code 1 and one line', async (t) => {
     [['reduce', 'scan.ply', '--out-dir', 'scan.ply'], /'scan\.ply' cannot be made: a file has that name/],
     [['reduce', 'scan.ply', '-o', 'light.ply', '--attributes', 'nothing=majority'], /option attributes/],
     [['inspect', 'nowhere.ply', '--json'], /there is no such file/],
+    [['reduce', 'nowhere.ply', '-o', 'light.glb', '--meshopt'], /meshopt needs packages/], // before the work
   ];
   for (const [args, line] of cases) {
     const { code, stdout, stderr } = await run(path, args);
@@ -174,7 +198,11 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce'], /reduce needs a file/],
     [['reduce', 'scan.ply'], /where should the result go\?/],
     [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj$/],
-    [['reconstruct', 'scan.ply', '-o', 'mesh'], /expected ply, xyz, glb, obj, stl$/],
+    [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl$/],
+    [['reduce', 'scan.ply', '-o'], /--out needs a value$/],
+    [['reduce', 'scan.ply', '-o', 'a.ply', '--seed', '-1'], /--seed needs a value; one that begins with - is given as --seed=-…$/],
+    [['reduce', 'scan.ply', '-o', 'a.ply', '--seed=-1'], /--seed is '-1': expected an integer/],
+    [['reduce', 'scan.ply', '--json=yes'], /--json takes no value$/],
     [['reduce', 'scan.ply', '-o', 'light.stl'], /an STL file holds triangles, not points/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--ration', '0.5'], /no option 'ration': did you mean --ratio\?/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--accuracy', '0.5'], /no option 'accuracy'/],
@@ -186,6 +214,7 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', '-o', 'a.ply', '--attributes', 'label=median'], /attributes\.label is 'median'/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--threads', '0'], /--threads is '0': expected 'auto' or an integer from 1 to 64/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--quantize'], /--quantize is for GLB files/],
+    [['reduce', 'scan.ply', '-o', 'a.glb', '--encoding', 'ascii'], /--encoding is for PLY files/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--format', 'glb'], /has its extension/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--out-dir', 'b'], /exclude each other/],
     [['reduce', 'scan.ply', '-o', '-', '--json'], /both want standard output/],
@@ -274,6 +303,7 @@ test('progress is a bar on a terminal and nothing elsewhere', async (t) => {
   assert.equal(code, 0, stderr);
   const frames = stderr.split('\r').filter((frame) => frame.includes(' %  '));
   assert.ok(frames.length > 1, stderr);
+  assert.match(frames[0], / 0 %  read /);
   for (const frame of frames) assert.match(frame, /^█*░* +\d+ %  [a-z]+ +scan\.ply\x1b\[K$/);
   assert.match(stderr, /\r\x1b\[Kpointweave: scan\.ply → mesh\.glb: .*\n$/, 'it goes when the work is done');
   assert.doesNotMatch((await good(path, ['reconstruct', 'scan.ply', '-o', 'mesh.glb'])).stderr, /[█░\r]/);
@@ -314,4 +344,5 @@ test('--version and --help', async (t) => {
   assert.equal(String((await good(path, ['--version'])).stdout), `${version}\n`);
   assert.match(String((await good(path, ['--help'])).stdout), /reduce .*\n.*reconstruct .*\n.*inspect /);
   assert.match(String((await good(path, ['inspect', '-h'])).stdout), /--json/);
+  assert.deepEqual([parse(['help']), parse(['help', 'reduce'])], [{ help: undefined }, { help: 'reduce' }]);
 });

@@ -1,11 +1,13 @@
-// Installed from the tarball, built with what people build with, and run in a browser: the same mesh everywhere.
+// Installed from the tarball, built with what people build with, and run in a browser: the same mesh everywhere, and elements that show it.
 
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
-import { rm } from 'node:fs/promises';
+import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
+import { read, sample, write } from 'pointweave';
+import { silhouette } from '../page/pictures.mjs';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
 import { CONSUMERS, install, pack } from './tarball.mjs';
 
@@ -22,19 +24,39 @@ await install((await pack({ after })).file);
 /** What Node says: all others have to say the same. */
 const expected = JSON.parse((await build('node', 'main.js')).stdout);
 
-/** @param {any} said by a page */
-function checkResult(said) {
-  assert.equal(said.error, undefined);
-  assert.deepEqual(said.hashes, expected.hashes);
-  assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
-}
-
 /** Opens a page and waits for what it has to say. */
-async function resultAt(t, address) {
+async function open(t, address) {
   const page = await newPage(t);
+  const elsewhere = [];
+  page.on('request', (request) => request.url().startsWith(address) || /^(data|blob):/.test(request.url()) || elsewhere.push(request.url()));
   await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
-  return page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
+  const said = await page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
+  assert.equal(said.error, undefined);
+  assert.deepEqual(elsewhere, [], 'nobody else is asked for anything');
+  return { page, said };
+}
+
+/** There are elements of the name, and each shows something. */
+async function checkPictures(page, name) {
+  const elements = await page.locator(name).all();
+  assert.ok(elements.length > 0);
+  for (const element of elements) {
+    const { area } = silhouette(await element.screenshot({ animations: 'disabled' }));
+    assert.ok(area > 5000, `${area} pixels are shown`);
+  }
+}
+
+/** Opens a page, and checks what it says and what it shows. */
+async function check(t, address) {
+  const { page, said } = await open(t, address);
+  assert.deepEqual(said.hashes, expected.hashes);
+  assert.deepEqual(said.reasons.filter((_, i) => i % 2 === 0), ['threads', 'single', 'single']);
+  const [{ triangles }] = said.shown;
+  assert.ok(triangles > 500);
+  assert.deepEqual(said.shown, [{ kind: 'scan', triangles }, { kind: 'glb', triangles }]);
+  await checkPictures(page, 'point-weave');
+  return page;
 }
 
 test('Node: every build and way gives one mesh', () => {
@@ -44,12 +66,12 @@ test('Node: every build and way gives one mesh', () => {
 });
 
 test('a module script with an import map', async (t) => {
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('importmap'), CONSUMERS])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('importmap'), CONSUMERS]));
 });
 
 test('Vite, built', async (t) => {
   await build('vite', 'bin:vite/bin/vite.js', 'build');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('vite/dist')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('vite/dist')]));
 });
 
 test('Vite, its development server', async (t) => {
@@ -64,7 +86,7 @@ test('Vite, its development server', async (t) => {
     });
     vite.once('exit', () => reject(new Error(said)));
   });
-  checkResult(await resultAt(t, address));
+  await check(t, address);
 });
 
 test('webpack', async (t) => {
@@ -72,16 +94,32 @@ test('webpack', async (t) => {
   const { default: config } = await import(new URL('webpack/webpack.config.js', CONSUMERS).href);
   const stats = await promisify(webpack)(config);
   assert.deepEqual([...stats.toJson().errors, ...stats.toJson().warnings].map(({ message }) => message), []);
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('webpack/dist'), folder('webpack')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('webpack/dist'), folder('webpack')]));
 });
 
 test('esbuild', async (t) => {
   await build('esbuild', 'build.js');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('esbuild/dist'), folder('esbuild')])));
+  await check(t, await serveFolders(t, ISOLATED, [folder('esbuild/dist'), folder('esbuild')]));
 });
 
 test('Next.js, rendered on the server and exported', async (t) => {
   await rm(folder('next/dist'), { recursive: true, force: true });
   await build('next', 'bin:next/dist/bin/next', 'build');
-  checkResult(await resultAt(t, await serveFolders(t, ISOLATED, [folder('next/dist')])));
+  const page = await check(t, await serveFolders(t, ISOLATED, [folder('next/dist')]));
+  await page.getByText(/^A duck of \d+ triangles\.$/).waitFor();
+});
+
+test("<model-viewer> shows the command line's GLB", async (t) => {
+  const files = folder('model-viewer/dist');
+  await mkdir(files, { recursive: true });
+  await writeFile(new URL('scan.ply', files), await write(await sample('duck', { count: 3000, seed: 1 })));
+  await run('npx', ['--no-install', 'pointweave', 'reconstruct', 'scan.ply', '-o', 'mesh.glb'], { cwd: fileURLToPath(files) });
+  const { page, said } = await open(t, await serveFolders(t, {}, [folder('model-viewer'), files, CONSUMERS]));
+  const { positions } = await read(await readFile(new URL('mesh.glb', files)));
+  for (const [axis, length] of [said.x, said.y, said.z].entries()) {
+    const along = positions.filter((_, i) => i % 3 === axis);
+    const expected = Math.max(...along) - Math.min(...along);
+    assert.ok(Math.abs(length - expected) < 1e-4 * expected, `${length} and not ${expected} along axis ${axis}`);
+  }
+  await checkPictures(page, 'model-viewer');
 });

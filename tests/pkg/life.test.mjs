@@ -57,6 +57,25 @@ test('a hundred engines that are disposed of leave no worker and no memory behin
   assert.ok(after - before < 1e6, `${before} bytes before, ${after} after`);
 });
 
+/** In a page: uses an engine that was used before, if there is one. Stands alone. */
+async function useAgain(threads) {
+  const { createEngine } = await import('pointweave');
+  globalThis.engine ??= await createEngine({ threads, idleMs: 200 });
+  const { report } = await globalThis.engine.reduce({ positions: Float32Array.from({ length: 3000 }, (_, i) => Math.sin(i * i)) });
+  return [report.build, report.outputPoints];
+}
+
+test('workers without a call end, and the next call has fresh ones', async (t) => {
+  const page = await openPage(t);
+  let made = 0;
+  page.on('worker', () => made++);
+  assert.deepEqual(await page.evaluate(useAgain, 2), ['threads', 333]);
+  for (let tries = 0; page.workers().length > 0 && tries < 100; tries++) await page.waitForTimeout(50);
+  assert.deepEqual([made, page.workers().length], [3, 0], 'one that computes and two that lend their threads have ended');
+  assert.deepEqual(await page.evaluate(useAgain, 2), ['threads', 333]);
+  assert.equal(made, 6);
+});
+
 /** In a page: what becomes of a cloud that is too large, and of the next. Stands alone. */
 async function exhaust(threads) {
   const { createEngine } = await import('pointweave');

@@ -10,6 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import * as api from 'pointweave';
 import * as core from 'pointweave/core';
+import * as element from 'pointweave/element';
 
 test('a reference is generated from the types and the pages', async (t) => {
   const out = await mkdtemp(join(tmpdir(), 'pointweave-reference-'));
@@ -18,7 +19,7 @@ test('a reference is generated from the types and the pages', async (t) => {
   const typedoc = join(tests, 'node_modules/typedoc/bin/typedoc');
   await promisify(execFile)(process.execPath, [typedoc, '--options', join(tests, 'typedoc.json'), '--out', out]);
   const written = (await readdir(out, { recursive: true })).map((file) => file.replace(/^.*[\\/]/, ''));
-  for (const name of [...Object.keys(api), ...Object.keys(core)]) {
+  for (const name of [api, core, element, { compress: true }].flatMap(Object.keys)) {
     assert.ok(written.some((file) => file === `${name}.html` || file.endsWith(`.${name}.html`)), name);
   }
   const page = await readFile(join(out, 'interfaces', written.find((file) => file.endsWith('ReduceOptions.html'))), 'utf8');

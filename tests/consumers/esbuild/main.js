@@ -1,3 +1,3 @@
-import { job, show } from '../job.js';
+import { run } from '../page.js';
 
-show(job({ workerUrl: 'pointweave-worker.js', wasmUrl: 'wasm' }));
+run({ workerUrl: 'pointweave-worker.js', wasmUrl: 'wasm' });

@@ -1,3 +1,3 @@
-import { job, show } from '../job.js';
+import { run } from '../page.js';
 
-show(job());
+run();

@@ -1,3 +1,5 @@
+import Checks from './checks.jsx';
+
 export default function Layout({ children }) {
-  return <html lang="en" suppressHydrationWarning><body>{children}</body></html>;
+  return <html lang="en" suppressHydrationWarning><body>{children}<Checks /></body></html>;
 }
