@@ -1,10 +1,11 @@
 //! Colours and scalars of a cloud on the vertices of a mesh.
 
 use crate::cloud::{Attribute, Cloud};
+use crate::lists::key;
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::{COLORS, Carry};
-use crate::placement::majority;
+use crate::placement::{color_key, majority};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ pub fn attach(
                 Carry::Mean => {
                     [0, 1, 2].map(|c| mean(shares, &|i| colors[i][c] as f32).round() as u8)
                 }
-                Carry::Majority => majority(shares.iter().map(|&(i, w)| (colors[i], w)), Ord::cmp)
+                Carry::Majority => majority(shares.iter().map(|&(i, w)| (colors[i], w)), color_key)
                     .unwrap_or_else(nearest),
                 Carry::Nearest => nearest(),
             }
@@ -57,7 +58,7 @@ pub fn attach(
             let votes = || shares.iter().map(|&(i, w)| (a.values[i], w));
             match how(&a.name) {
                 Carry::Mean => mean(shares, &|i| a.values[i]),
-                Carry::Majority => majority(votes(), f32::total_cmp).unwrap_or_else(nearest),
+                Carry::Majority => majority(votes(), key).unwrap_or_else(nearest),
                 Carry::Nearest => nearest(),
             }
         };

@@ -8,6 +8,7 @@
 
 use crate::error::Result;
 use crate::kernel::dipoles;
+use crate::lists::{key, pack, unpack};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::progress::{Progress, Stage};
@@ -192,24 +193,16 @@ pub fn divide(sites: &Sites, progress: &mut dyn Progress) -> Result<Vec<Subdomai
 impl Subdomain {
     /// The two halves along the longest axis of the core, grown anew; the core must have at least two sites.
     pub fn split(&self, sites: &Sites, growth: &mut Growth) -> Vec<Subdomain> {
-        let mut core = self.support[..self.core].to_vec();
+        let core = &self.support[..self.core];
         let position = |i: &u32| sites.tree.points[*i as usize];
-        let lo = core
-            .iter()
-            .map(position)
-            .reduce(Vec3::min)
-            .unwrap_or_default();
-        let hi = core
-            .iter()
-            .map(position)
-            .reduce(Vec3::max)
-            .unwrap_or_default();
+        let at = || core.iter().map(position);
+        let lo = at().reduce(Vec3::min).unwrap_or_default();
+        let hi = at().reduce(Vec3::max).unwrap_or_default();
         let axis = (hi - lo).max_position();
-        core.sort_by(|a, b| {
-            position(a)[axis]
-                .total_cmp(&position(b)[axis])
-                .then(a.cmp(b))
-        });
+        let place = |i: &u32| pack(key(position(i)[axis]), *i);
+        let mut sorted: Vec<u64> = core.iter().map(place).collect();
+        sorted.sort_unstable();
+        let core: Vec<u32> = sorted.into_iter().map(|place| unpack(place).1).collect();
         let (low, high) = core.split_at(core.len() / 2);
         [low, high]
             .into_iter()

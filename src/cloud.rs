@@ -64,10 +64,11 @@ impl Frame {
         let mut corners = [[0.0; 3]; 2];
         for a in 0..3 {
             let mut x: Vec<f64> = triples(positions).step_by(stride).map(|p| p[a]).collect();
-            x.sort_unstable_by(f64::total_cmp);
             let few = (x.len() as f64 * A_FEW).ceil() as usize;
-            corners[0][a] = *x.get(few)?;
-            corners[1][a] = *x.iter().nth_back(few)?;
+            let last = x.len().checked_sub(few + 1)?;
+            for (corner, place) in corners.iter_mut().zip([few, last]) {
+                corner[a] = *x.select_nth_unstable_by(place, f64::total_cmp).1;
+            }
         }
         let inner = Frame::around(corners.into_iter());
         let near =

@@ -1,6 +1,7 @@
 //! One half-edge collapse: what it costs, and whether it may be made.
 
 use crate::extract::Mesh;
+use crate::lists::Lists;
 use glam::DVec3;
 
 /// A new triangle's normal is within 45° of that of the one it replaces (cosine).
@@ -21,37 +22,18 @@ pub(crate) struct Rules {
 #[derive(Clone, Copy)]
 pub(crate) struct Collapse {
     /// 24 times the volume that it adds between the triangles and the surface.
-    pub(crate) cost: f64,
+    pub(crate) cost: f32,
     pub(crate) to: u32,
 }
 
-/// Lists of triangles by vertex.
-pub(crate) struct Around {
-    start: Vec<u32>,
-    triangles: Vec<u32>,
-}
+/// The triangles of every vertex.
+pub(crate) type Around = Lists<u32>;
 
-impl Around {
-    pub(crate) fn new(mesh: &Mesh) -> Around {
-        // The list of v ends where that of v + 1 starts: filling moves each start to its end.
-        let mut start = vec![0u32; mesh.vertices.len() + 2];
-        let corners = mesh.triangles.as_flattened();
-        corners.iter().for_each(|&v| start[v as usize + 2] += 1);
-        for v in 2..start.len() {
-            start[v] += start[v - 1];
-        }
-        let mut triangles = vec![0; corners.len()];
-        for (k, &v) in corners.iter().enumerate() {
-            let next = &mut start[v as usize + 1];
-            triangles[*next as usize] = k as u32 / 3;
-            *next += 1;
-        }
-        Around { start, triangles }
-    }
-
-    pub(crate) fn of(&self, v: u32) -> &[u32] {
-        &self.triangles[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
-    }
+pub(crate) fn around(mesh: &Mesh) -> Around {
+    Lists::new(mesh.vertices.len(), || {
+        let triangles = mesh.triangles.iter().zip(0u32..);
+        triangles.flat_map(|(corners, t)| corners.map(|v| (v, t)))
+    })
 }
 
 /// The link condition (Hoppe et al., 1993) for a vertex `v` inside of the surface: it has just the two neighbours in
@@ -126,6 +108,7 @@ impl Star {
             let (k, cost) = (best?, after - before);
             let to = self.ring[k].vertex;
             if can_collapse(v, to, mesh, around) && !self.folds(k, mesh, around) {
+                let cost = cost as f32;
                 return Some(Collapse { cost, to });
             }
             self.ring[k].refused = true;

@@ -1,6 +1,7 @@
 //! Distances from points to a mesh.
 
 use crate::error::Result;
+use crate::lists::{key, of_key, pack, unpack};
 use crate::octree::Octree;
 use crate::par;
 use crate::progress::{Progress, Stage};
@@ -72,7 +73,7 @@ impl<'a> TriangleTree<'a> {
             }
             return;
         }
-        let mut near = [(0.0f32, 0); 8];
+        let mut near = [0; 8];
         let mut count = 0;
         for child in node.child_ids() {
             let (low, high) = self.boxes[child];
@@ -81,16 +82,16 @@ impl<'a> TriangleTree<'a> {
                 .max(Vec3::ZERO)
                 .length_squared();
             if (distance2 as f64) < best.0 {
-                near[count] = (distance2, child);
+                near[count] = pack(key(distance2), child as u32);
                 count += 1;
             }
         }
-        near[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for &(distance2, child) in &near[..count] {
-            if distance2 as f64 >= best.0 {
+        near[..count].sort_unstable();
+        for (distance2, child) in near[..count].iter().map(|&n| unpack(n)) {
+            if f64::from(of_key(distance2)) >= best.0 {
                 break;
             }
-            self.closest_below(child, point, best);
+            self.closest_below(child as usize, point, best);
         }
     }
 

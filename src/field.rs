@@ -140,18 +140,18 @@ impl<'a> Field<'a> {
                 let terms = [weight, slope * dx, slope * dy, slope * dz];
                 let weight = std::array::from_fn(|k| terms[k]);
                 let subdomain = self.owner[i];
-                match parts.iter_mut().find(|part| part.subdomain == subdomain) {
-                    Some(part) => {
+                // In this order their sums do not depend on which positions share a block.
+                let place = parts.iter().take_while(|p| p.subdomain < subdomain).count();
+                match parts.get_mut(place) {
+                    Some(part) if part.subdomain == subdomain => {
                         for (sum, term) in part.weight.iter_mut().zip(weight) {
                             *sum += term;
                         }
                     }
-                    None => parts.push(Part { subdomain, weight }),
+                    _ => parts.insert(place, Part { subdomain, weight }),
                 }
             },
         );
-        // Sums in this order do not depend on which positions share a block.
-        parts.sort_unstable_by_key(|part| part.subdomain);
     }
 
     /// F(x) at a block's positions, and for N = 4 ∇F(x) behind it; NaN where no sub-domain reaches.

@@ -37,6 +37,7 @@ pub mod pool;
 pub mod progress;
 pub mod par;
 pub mod rng;
+mod lists;
 pub mod power;
 pub mod lanes;
 pub mod linalg;

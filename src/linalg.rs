@@ -40,8 +40,12 @@ pub fn sym_eigen(m: &[f64; 6]) -> SymEigen {
             rotate(&mut a, &mut v, p, q);
         }
     }
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| a[i][i].total_cmp(&a[j][j]));
+    let mut order: [usize; 3] = [0, 1, 2];
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if a[order[j]][order[j]] < a[order[i]][order[i]] {
+            order.swap(i, j);
+        }
+    }
     let column = |j: usize| DVec3::new(v[0][j], v[1][j], v[2][j]);
     let (e0, e1) = (column(order[0]).normalize_or_zero(), column(order[1]));
     let e1 = (e1 - e0 * e0.dot(e1)).normalize_or_zero();

@@ -5,9 +5,10 @@
 //! into one octant make no node. Points that share all 21 bits an axis are cut in the middle of their longest side, copies by
 //! index, so neither costs more than others.
 
+use crate::lists::{key, sort_by_key};
 use crate::par;
 use glam::Vec3;
-use std::cmp::Ordering;
+
 use std::ops::Range;
 
 /// Points of a leaf: small enough that a scan is cheaper than another level.
@@ -173,18 +174,16 @@ impl Octree {
         }
         let size = hi - lo;
         let longest = (0..3).fold(0, |a, b| if size[b] > size[a] { b } else { a });
-        let turned = |p: Vec3| [0, 1, 2].map(|a| p[(longest + a) % 3]);
-        let mut sorted: Vec<(Vec3, u32)> = self.points[range.clone()]
-            .iter()
+        let points = self.points[range.clone()].iter();
+        let mut sorted: Vec<(Vec3, u32)> = points
             .copied()
             .zip(self.order[range.clone()].iter().copied())
             .collect();
-        sorted.sort_unstable_by(|(p, i), (q, j)| {
-            let place = turned(*p).into_iter().zip(turned(*q));
-            place
-                .fold(Ordering::Equal, |order, (x, y)| order.then(x.total_cmp(&y)))
-                .then(i.cmp(j))
-        });
+        // By what counts least first: each sort keeps the order of equals.
+        sort_by_key(&mut sorted, |&(_, i)| i);
+        for turn in [2, 1, 0] {
+            sort_by_key(&mut sorted, |&(p, _)| key(p[(longest + turn) % 3]));
+        }
         for (k, (p, i)) in range.clone().zip(sorted) {
             (self.points[k], self.order[k]) = (p, i);
         }

@@ -25,6 +25,7 @@ use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
 use crate::kernel::dipoles;
+use crate::lists::{Lists, key, of_key, pack, unpack};
 use crate::par;
 use crate::params::Propagation;
 use crate::progress::{Progress, Stage};
@@ -56,9 +57,6 @@ struct Edge {
     b: u32,
     weight: f32,
 }
-
-/// A gradient of one sub-domain's function at one site.
-type Sample = (u32, u32, Vec3);
 
 /// Weight of two neighbouring sites' dipoles against that of a shared site. Of two sheets a spacing or two apart some
 /// sub-domains hold sites of both, so what they share misleads, and there are more of those than of neighbours: on plates
@@ -95,10 +93,10 @@ pub fn orient(
         },
     )?;
     let edges = edges(fits, sites, &gradients);
-    let adjacency = Adjacency::new(n, &edges);
+    let adjacency = adjacency(n, &edges);
     let mut signs = vec![1.0; n];
     let mut energy_before = energy(&edges, &signs);
-    let components = adjacency.components();
+    let components = components(&adjacency);
     if !sites.oriented {
         match propagation {
             Propagation::Paper => {
@@ -164,115 +162,96 @@ fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
 /// All edges, sorted by (a, b).
 fn edges(fits: &Fits, sites: &Sites, gradients: &[Vec<Vec3>]) -> Vec<Edge> {
     let n_sites = sites.tree.points.len();
-    // Lists are made as long as they get: grown by doubling they would be the largest that a surface needs.
-    let supports = fits.subdomains.iter().map(|s| s.support.len()).sum();
-    let mut samples: Vec<Sample> = Vec::with_capacity(supports);
+    let each = || fits.subdomains.iter().zip(gradients).zip(0u32..);
+    // Gradients by site, and the sub-domain whose core a site is in.
+    let samples = Lists::new(n_sites, || {
+        each().flat_map(|((subdomain, gradients), s)| {
+            let samples = subdomain.support.iter().zip(gradients);
+            samples.map(move |(&i, &g)| (i, (s, g)))
+        })
+    });
     let mut owner = vec![u32::MAX; n_sites];
-    for (s, subdomain) in fits.subdomains.iter().enumerate() {
-        samples.extend(
-            subdomain
-                .support
-                .iter()
-                .zip(&gradients[s])
-                .map(|(&i, &g)| (i, s as u32, g)),
-        );
+    for ((subdomain, _), s) in each() {
         subdomain.support[..subdomain.core]
             .iter()
-            .for_each(|&i| owner[i as usize] = s as u32);
+            .for_each(|&i| owner[i as usize] = s);
     }
-    samples.sort_unstable_by_key(|&(site, s, _)| (site, s));
-    let groups = || samples.chunk_by(|x, y| x.0 == y.0);
-    let shared: usize = groups().map(|g| g.len() * (g.len() - 1) / 2).sum();
+    let unsigned = vec![1.0; fits.subdomains.len()];
+    let normals = site_normals(fits, sites, gradients, &unsigned);
+    let blur2 = BLUR * sites.noise * sites.noise;
+    // What every pair says: a, and b with the agreement.
+    let shared = || {
+        samples.iter().flat_map(|group| {
+            let firsts = group.iter().enumerate();
+            firsts.flat_map(|(k, &(a, ga))| {
+                let others = group[k + 1..].iter();
+                others.map(move |&(b, gb)| (a, pack(b, key(ga.dot(gb)))))
+            })
+        })
+    };
     let neighbors = || {
         let all = (0..n_sites as u32).flat_map(|i| sites.graph.of(i).iter().map(move |&j| (i, j)));
         all.filter_map(|(i, j)| {
             let (a, b) = (owner[i as usize], owner[j as usize]);
-            (a != b && a.max(b) != u32::MAX).then_some((i, j, a.min(b), a.max(b)))
+            if a == b || a.max(b) == u32::MAX {
+                return None;
+            }
+            let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
+            let stand = dipoles(d, normals[i as usize], normals[j as usize], blur2);
+            Some((a.min(b), pack(a.max(b), key(DIPOLES * stand))))
         })
     };
-    // What every pair says: (a, b, agreement).
-    let mut said: Vec<(u32, u32, f32)> = Vec::with_capacity(shared + neighbors().count());
-    for group in groups() {
-        for (k, &(_, a, ga)) in group.iter().enumerate() {
-            said.extend(group[k + 1..].iter().map(|&(_, b, gb)| (a, b, ga.dot(gb))));
-        }
-    }
+    let mut said = Lists::new(fits.subdomains.len(), || shared().chain(neighbors()));
     drop(samples);
-    let unsigned = vec![1.0; fits.subdomains.len()];
-    let normals = site_normals(fits, sites, gradients, &unsigned);
-    let blur2 = BLUR * sites.noise * sites.noise;
-    said.extend(neighbors().map(|(i, j, a, b)| {
-        let d = sites.tree.points[j as usize] - sites.tree.points[i as usize];
-        let stand = dipoles(d, normals[i as usize], normals[j as usize], blur2);
-        (a, b, DIPOLES * stand)
-    }));
-    said.sort_unstable_by(|x, y| (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2)));
     let size = |s: u32| fits.subdomains[s as usize].support.len();
-    said.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
-        .filter_map(|pair| {
-            let (a, b) = (pair[0].0, pair[0].1);
-            let sum: f32 = pair.iter().map(|p| p.2).sum();
+    let mut edges = Vec::new();
+    for a in 0..said.count() as u32 {
+        let said = said.of_mut(a);
+        said.sort_unstable();
+        for pair in said.chunk_by(|x, y| unpack(*x).0 == unpack(*y).0) {
+            let b = unpack(pair[0]).0;
+            let sum: f32 = pair.iter().map(|&p| of_key(unpack(p).1)).sum();
             let weight = sum / (size(a).min(size(b)) as f32 * (1.0 + DIPOLES));
-            (weight != 0.0).then_some(Edge { a, b, weight })
-        })
-        .collect()
-}
-
-/// Edges by sub-domain.
-struct Adjacency {
-    starts: Vec<u32>,
-    /// Index of the edge and the sub-domain at its other end.
-    targets: Vec<(u32, u32)>,
-}
-
-impl Adjacency {
-    fn new(n: usize, edges: &[Edge]) -> Adjacency {
-        let mut starts = vec![0u32; n + 1];
-        for e in edges {
-            starts[e.a as usize + 1] += 1;
-            starts[e.b as usize + 1] += 1;
-        }
-        for i in 0..n {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut targets = vec![(0, 0); 2 * edges.len()];
-        for (i, e) in edges.iter().enumerate() {
-            for (from, to) in [(e.a, e.b), (e.b, e.a)] {
-                targets[next[from as usize] as usize] = (i as u32, to);
-                next[from as usize] += 1;
+            if weight != 0.0 {
+                edges.push(Edge { a, b, weight });
             }
         }
-        Adjacency { starts, targets }
     }
+    edges
+}
 
-    fn of(&self, s: u32) -> &[(u32, u32)] {
-        &self.targets[self.starts[s as usize] as usize..self.starts[s as usize + 1] as usize]
-    }
+/// The edges of every sub-domain: their indices, and the sub-domains at their other ends.
+type Adjacency = Lists<(u32, u32)>;
 
-    /// Connected components, by their first sub-domain.
-    fn components(&self) -> Vec<Vec<u32>> {
-        let mut seen = vec![false; self.starts.len() - 1];
-        let mut out = Vec::new();
-        for start in 0..seen.len() as u32 {
-            if seen[start as usize] {
-                continue;
-            }
-            seen[start as usize] = true;
-            let mut members = vec![start];
-            let mut next = 0;
-            while next < members.len() {
-                for &(_, t) in self.of(members[next]) {
-                    if !std::mem::replace(&mut seen[t as usize], true) {
-                        members.push(t);
-                    }
+fn adjacency(n: usize, edges: &[Edge]) -> Adjacency {
+    Lists::new(n, || {
+        let ends = edges.iter().zip(0u32..);
+        ends.flat_map(|(e, i)| [(e.a, (i, e.b)), (e.b, (i, e.a))])
+    })
+}
+
+/// Connected components, by their first sub-domain.
+fn components(adjacency: &Adjacency) -> Vec<Vec<u32>> {
+    let mut seen = vec![false; adjacency.count()];
+    let mut out = Vec::new();
+    for start in 0..seen.len() as u32 {
+        if seen[start as usize] {
+            continue;
+        }
+        seen[start as usize] = true;
+        let mut members = vec![start];
+        let mut next = 0;
+        while next < members.len() {
+            for &(_, t) in adjacency.of(members[next]) {
+                if !std::mem::replace(&mut seen[t as usize], true) {
+                    members.push(t);
                 }
-                next += 1;
             }
-            out.push(members);
+            next += 1;
         }
-        out
+        out.push(members);
     }
+    out
 }
 
 /// A maximum spanning forest of |w| (Kruskal) with the signs it implies.
@@ -288,9 +267,9 @@ struct Forest {
 
 impl Forest {
     fn strongest_first(n: usize, edges: &[Edge]) -> Forest {
-        let mut order: Vec<u32> = (0..edges.len() as u32).collect();
-        let strength = |&i: &u32| edges[i as usize].weight.abs();
-        order.sort_by(|i, j| strength(j).total_cmp(&strength(i)).then(i.cmp(j)));
+        let strongest = |(e, i): (&Edge, u32)| pack(!key(e.weight.abs()), i);
+        let mut order: Vec<u64> = edges.iter().zip(0..).map(strongest).collect();
+        order.sort_unstable();
         let mut set: Vec<u32> = (0..n as u32).collect();
         fn root(set: &mut [u32], mut i: u32) -> u32 {
             while set[i as usize] != i {
@@ -301,7 +280,7 @@ impl Forest {
         }
         let mut tree = Vec::with_capacity(n);
         for i in order {
-            let e = edges[i as usize];
+            let e = edges[unpack(i).1 as usize];
             let (a, b) = (root(&mut set, e.a), root(&mut set, e.b));
             if a != b {
                 set[a.max(b) as usize] = a.min(b);
@@ -313,14 +292,14 @@ impl Forest {
 
     /// Roots every tree at its first sub-domain and carries signs from there.
     fn rooted(n: usize, tree: &[Edge]) -> Forest {
-        let adjacency = Adjacency::new(n, tree);
+        let adjacency = adjacency(n, tree);
         let mut forest = Forest {
             signs: vec![1.0; n],
             parent: (0..n as u32).collect(),
             depth: vec![0; n],
             order: Vec::with_capacity(n),
         };
-        for component in adjacency.components() {
+        for component in components(&adjacency) {
             for &s in &component {
                 for &(e, t) in adjacency.of(s) {
                     if t != forest.parent[s as usize] {
@@ -420,7 +399,7 @@ fn advancing_front(
 ) {
     let mut aligned = vec![false; signs.len()];
     let mut marked = vec![false; signs.len()];
-    for component in adjacency.components() {
+    for component in components(adjacency) {
         // Steps 1 and 2.
         let (start, sign) = highest(&component, fits, sites);
         signs[start as usize] = sign;

@@ -5,7 +5,6 @@
 //! it, `v = (Σ u^m A_k)⁻¹ Σ u^m A_k x_k`, lands as far outside and exactly on creases and corners.
 //! Half-way between the two lies on the surface (to third order).
 
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -15,6 +14,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::clusters::Shares;
 use crate::features::Features;
 use crate::linalg::sym_eigen;
+use crate::lists::{key, pack, unpack};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::{COLORS, Carry, Placement};
@@ -309,7 +309,7 @@ pub fn carry(
     let colors = cloud.colors.as_ref().map(|colors| {
         let of = |i: usize| match how(COLORS) {
             Carry::Mean => [0, 1, 2].map(|c| mean(i, &|k| f64::from(colors[k][c])).round() as u8),
-            Carry::Majority => majority(votes(i).map(|(k, u)| (colors[k], u)), Ord::cmp)
+            Carry::Majority => majority(votes(i).map(|(k, u)| (colors[k], u)), color_key)
                 .unwrap_or(colors[closest(i)]),
             Carry::Nearest => colors[closest(i)],
         };
@@ -318,7 +318,7 @@ pub fn carry(
     let attributes = cloud.attributes.iter().map(|a| {
         let of = |i: usize| match how(&a.name) {
             Carry::Mean => mean(i, &|k| f64::from(a.values[k])) as f32,
-            Carry::Majority => majority(votes(i).map(|(k, u)| (a.values[k], u)), f32::total_cmp)
+            Carry::Majority => majority(votes(i).map(|(k, u)| (a.values[k], u)), key)
                 .unwrap_or(a.values[closest(i)]),
             Carry::Nearest => a.values[closest(i)],
         };
@@ -346,28 +346,29 @@ pub fn carry(
     }
 }
 
-/// The value with the most votes, of equals the smallest; `None` without votes.
-pub(crate) fn majority<T: Copy + PartialEq>(
+/// The value with the most votes, of equals the one with the smallest key; `None` without votes.
+pub(crate) fn majority<T: Copy>(
     votes: impl Iterator<Item = (T, f32)>,
-    order: fn(&T, &T) -> Ordering,
+    key: fn(T) -> u32,
 ) -> Option<T> {
-    most_of(votes.collect(), order)
-}
-
-/// Apart from [`majority`], so that the sort is compiled once for each type of values and not for each kind of iterator.
-fn most_of<T: Copy + PartialEq>(
-    mut votes: Vec<(T, f32)>,
-    order: fn(&T, &T) -> Ordering,
-) -> Option<T> {
-    votes.sort_by(|a, b| order(&a.0, &b.0));
+    let votes: Vec<(T, f32)> = votes.collect();
+    let keys = votes.iter().zip(0..);
+    let mut sorted: Vec<u64> = keys.map(|(&(value, _), i)| pack(key(value), i)).collect();
+    sorted.sort_unstable();
     let mut most = None;
-    for same in votes.chunk_by(|a, b| a.0 == b.0) {
-        let sum: f64 = same.iter().map(|&(_, u)| f64::from(u)).sum();
+    for same in sorted.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+        let vote = |packed: &u64| votes[unpack(*packed).1 as usize];
+        let sum: f64 = same.iter().map(|packed| f64::from(vote(packed).1)).sum();
         if most.is_none_or(|(_, before)| sum > before) {
-            most = Some((same[0].0, sum));
+            most = Some((vote(&same[0]).0, sum));
         }
     }
     most.map(|(value, _)| value)
+}
+
+/// A colour's [`key`].
+pub(crate) fn color_key([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_be_bytes([0, r, g, b])
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Lengths are fractions of the bounding-box diagonal of the input, which is the unit of the unit frame. The structs
 //! serialise in camel case, as JS sees them; a number that does not exist for a job is 0, and `reason` says why.
 
+use crate::lists::{Lists, pack, unpack};
 use crate::progress::Stage;
 use glam::{DVec3, Vec3};
 use serde::{Serialize, Serializer, ser::SerializeMap};
@@ -180,76 +181,76 @@ pub fn topology(triangles: &[[u32; 3]], vertex_count: usize) -> Topology {
         duplicate: count_duplicates(triangles, vertex_count),
         ..Topology::default()
     };
-    let mut components = Sets::new(vertex_count);
+    let mut joined = Sets::new(vertex_count);
     for &[a, b, c] in triangles {
-        components.join(a, b);
-        components.join(a, c);
+        joined.join(a, b);
+        joined.join(a, c);
     }
+    let (component, count) = joined.numbered();
+    let mut euler = vec![0i64; count];
     // A corner is one vertex of one triangle (3 t + i); corners of one vertex are joined across shared edges.
     let mut corners = Sets::new(3 * triangles.len());
     let mut loops = Sets::new(vertex_count);
-    let mut euler = vec![0i64; vertex_count];
     let mut on_boundary = vec![false; vertex_count];
-    for edge in EdgeGroups::new(triangles, vertex_count).iter() {
-        let first = edge[0];
-        let (lo, hi) = (first.lo, first.hi);
-        euler[components.find(lo) as usize] -= 1;
-        match edge {
-            [_] => {
-                t.boundary_edges += 1;
-                loops.join(lo, hi);
-                on_boundary[lo as usize] = true;
-                on_boundary[hi as usize] = true;
+    for (lo, sides) in (0u32..).zip(half_edges(triangles, vertex_count).iter()) {
+        for edge in sides.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+            let first = HalfEdge::unpack(edge[0]);
+            let hi = first.hi;
+            if lo == hi {
+                continue;
             }
-            [a, b] => t.inconsistent_edges += usize::from(a.forward == b.forward),
-            _ => t.non_manifold_edges += 1,
-        }
-        for other in &edge[1..] {
-            corners.join(
-                first.corner_at(lo, triangles),
-                other.corner_at(lo, triangles),
-            );
-            corners.join(
-                first.corner_at(hi, triangles),
-                other.corner_at(hi, triangles),
-            );
+            euler[component[lo as usize] as usize] -= 1;
+            match edge {
+                [_] => {
+                    t.boundary_edges += 1;
+                    loops.join(lo, hi);
+                    on_boundary[lo as usize] = true;
+                    on_boundary[hi as usize] = true;
+                }
+                [_, second] => {
+                    let second = HalfEdge::unpack(*second);
+                    t.inconsistent_edges += usize::from(first.forward == second.forward);
+                }
+                _ => t.non_manifold_edges += 1,
+            }
+            for other in edge[1..].iter().map(|&side| HalfEdge::unpack(side)) {
+                for v in [lo, hi] {
+                    corners.join(first.corner_at(v, triangles), other.corner_at(v, triangles));
+                }
+            }
         }
     }
+    // Triangles of each component, and its first one.
+    let mut size = vec![(0u32, u32::MAX); count];
     let mut fans = vec![0u32; vertex_count];
-    let mut size = vec![(0usize, usize::MAX); vertex_count];
-    for (i, triangle) in triangles.iter().enumerate() {
-        let root = components.find(triangle[0]) as usize;
-        euler[root] += 1;
-        size[root] = (size[root].0 + 1, size[root].1.min(i));
-        for (k, &v) in triangle.iter().enumerate() {
-            let corner = (3 * i + k) as u32;
+    for (i, triangle) in (0u32..).zip(triangles) {
+        let c = component[triangle[0] as usize] as usize;
+        euler[c] += 1;
+        size[c] = (size[c].0 + 1, size[c].1.min(i));
+        for (corner, &v) in (3 * i..).zip(triangle) {
             fans[v as usize] += u32::from(corners.find(corner) == corner);
         }
     }
-    let mut roots = Vec::new();
-    for v in 0..vertex_count {
-        if fans[v] == 0 {
-            continue;
-        }
+    for v in (0..vertex_count).filter(|&v| fans[v] > 0) {
         t.non_manifold_vertices += usize::from(fans[v] > 1);
-        let root = components.find(v as u32) as usize;
         // A boundary loop counts as one more face: the disk that caps it.
         let caps = on_boundary[v] && loops.find(v as u32) == v as u32;
-        euler[root] += 1 + i64::from(caps);
-        if root == v {
-            roots.push(v);
-        }
+        euler[component[v] as usize] += 1 + i64::from(caps);
     }
-    roots.sort_by_key(|&r| (std::cmp::Reverse(size[r].0), size[r].1));
-    t.components = roots.len();
-    t.genus = roots.iter().map(|&r| (2 - euler[r]) / 2).collect();
+    // Largest first.
+    let there = size.iter().filter(|(triangles, _)| *triangles > 0);
+    let mut order: Vec<u64> = there.map(|&(size, first)| pack(!size, first)).collect();
+    order.sort_unstable();
+    t.components = order.len();
+    let of_first = |&packed: &u64| component[triangles[unpack(packed).1 as usize][0] as usize];
+    let genus = |c: u32| (2 - euler[c as usize]) / 2;
+    t.genus = order.iter().map(|first| genus(of_first(first))).collect();
     t
 }
 
 /// One triangle's side of an edge between vertices `lo` ≤ `hi`.
 #[derive(Clone, Copy)]
 struct HalfEdge {
-    lo: u32,
     hi: u32,
     triangle: u32,
     /// The triangle runs from `lo` to `hi`.
@@ -257,62 +258,47 @@ struct HalfEdge {
 }
 
 impl HalfEdge {
+    /// As a number that is ordered by `hi`, then by the triangle.
+    fn pack(self) -> u64 {
+        pack(self.hi, self.triangle << 1 | u32::from(self.forward))
+    }
+
+    fn unpack(packed: u64) -> HalfEdge {
+        let (hi, side) = unpack(packed);
+        HalfEdge {
+            hi,
+            triangle: side >> 1,
+            forward: side & 1 == 1,
+        }
+    }
+
     /// The corner of this triangle at vertex `v`.
-    fn corner_at(&self, v: u32, triangles: &[[u32; 3]]) -> u32 {
-        let t = self.triangle;
-        let k = triangles[t as usize]
-            .iter()
-            .position(|&w| w == v)
-            .unwrap_or(0);
-        3 * t + k as u32
+    fn corner_at(self, v: u32, triangles: &[[u32; 3]]) -> u32 {
+        let corners = triangles[self.triangle as usize];
+        let place = corners.iter().position(|&w| w == v).unwrap_or(0);
+        3 * self.triangle + place as u32
     }
 }
 
-/// Half-edges sorted so that those of one edge are neighbours.
-struct EdgeGroups(Vec<HalfEdge>);
-
-impl EdgeGroups {
-    fn new(triangles: &[[u32; 3]], vertex_count: usize) -> EdgeGroups {
-        let half_edges = || {
-            triangles.iter().enumerate().flat_map(|(i, t)| {
-                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| HalfEdge {
-                    lo: a.min(b),
-                    hi: a.max(b),
-                    triangle: i as u32,
-                    forward: a < b,
-                })
+/// The half-edges of each vertex `lo`, packed: those of one edge are neighbours.
+fn half_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Lists<u64> {
+    let mut sorted = Lists::new(vertex_count, || {
+        let numbered = triangles.iter().zip(0u32..);
+        numbered.flat_map(|(&[a, b, c], triangle)| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| {
+                let half_edge = HalfEdge {
+                    hi: from.max(to),
+                    triangle,
+                    forward: from < to,
+                };
+                (from.min(to), half_edge.pack())
             })
-        };
-        // Counting sort by the lower vertex, then each vertex's few half-edges by the upper.
-        let mut start = vec![0u32; vertex_count + 1];
-        half_edges().for_each(|e| start[e.lo as usize + 1] += 1);
-        for v in 0..vertex_count {
-            start[v + 1] += start[v];
-        }
-        let mut next = start.clone();
-        let none = HalfEdge {
-            lo: 0,
-            hi: 0,
-            triangle: 0,
-            forward: false,
-        };
-        let mut sorted = vec![none; 3 * triangles.len()];
-        for e in half_edges() {
-            sorted[next[e.lo as usize] as usize] = e;
-            next[e.lo as usize] += 1;
-        }
-        for v in 0..vertex_count {
-            sorted[start[v] as usize..start[v + 1] as usize].sort_by_key(|e| e.hi);
-        }
-        EdgeGroups(sorted)
+        })
+    });
+    for lo in 0..vertex_count as u32 {
+        sorted.of_mut(lo).sort_unstable();
     }
-
-    /// The half-edges of one edge after the other; an edge from a vertex to itself is left out.
-    fn iter(&self) -> impl Iterator<Item = &[HalfEdge]> {
-        self.0
-            .chunk_by(|a, b| (a.lo, a.hi) == (b.lo, b.hi))
-            .filter(|g| g[0].lo != g[0].hi)
-    }
+    sorted
 }
 
 fn count_duplicates(triangles: &[[u32; 3]], vertex_count: usize) -> usize {

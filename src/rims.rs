@@ -1,6 +1,7 @@
 //! Smooth ends of open surfaces: the lattice leaves them in steps.
 
 use crate::extract::Mesh;
+use crate::lists::{Lists, pack, unpack};
 use glam::DVec3;
 
 /// Sweeps over the rim. Steps are one or two cells long; each sweep halves what is shorter than about three.
@@ -16,31 +17,26 @@ pub(crate) fn smooth(mesh: &mut Mesh, at_end: &[bool]) {
         return;
     }
     let is_rim = |v: u32| rim.binary_search_by_key(&v, |r| r.vertex).ok();
-    let mut around: Vec<(u32, u32)> = Vec::new();
-    for (t, triangle) in mesh.triangles.iter().enumerate() {
-        around.extend(
-            triangle
-                .iter()
-                .filter_map(|&v| Some((is_rim(v)? as u32, t as u32))),
-        );
-    }
-    around.sort_unstable();
-    let lists: Vec<&[(u32, u32)]> = around.chunk_by(|a, b| a.0 == b.0).collect();
+    let around: Lists<u32> = Lists::new(rim.len(), || {
+        let triangles = mesh.triangles.iter().zip(0u32..);
+        let corners = triangles.flat_map(|(corners, t)| corners.map(|v| (v, t)));
+        corners.filter_map(|(v, t)| Some((is_rim(v)? as u32, t)))
+    });
     let normals: Vec<DVec3> = mesh
         .triangles
         .iter()
         .map(|&t| cross(mesh, t).normalize_or_zero())
         .collect();
     for _ in 0..SWEEPS {
-        for (end, list) in rim.iter().zip(&lists) {
+        for (end, triangles) in rim.iter().zip(around.iter()) {
             let v = end.vertex as usize;
             let at = |v: u32| mesh.vertices[v as usize].as_dvec3();
             let (old, normal) = (mesh.vertices[v], mesh.normals[v].as_dvec3());
             let pull = (at(end.previous) + at(end.next)) / 2.0 - at(end.vertex);
             let step = (pull - normal * normal.dot(pull)) / 2.0;
             let worst = |mesh: &Mesh| {
-                let rate = |&(_, t): &(u32, u32)| quality(mesh, t as usize, normals[t as usize]);
-                list.iter().map(rate).fold(f64::INFINITY, f64::min)
+                let rate = |&t: &u32| quality(mesh, t as usize, normals[t as usize]);
+                triangles.iter().map(rate).fold(f64::INFINITY, f64::min)
             };
             let before = worst(mesh);
             mesh.vertices[v] = (at(end.vertex) + step).as_vec3();
@@ -61,34 +57,28 @@ struct End {
 /// The rim's vertices in ascending order. In a manifold mesh each has one boundary edge in and one out.
 fn rim(mesh: &Mesh, at_end: &[bool]) -> Vec<End> {
     let edges = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
-    // Inner edges occur in both directions, boundary edges in one.
-    let mut sorted: Vec<(u32, u32, bool)> = mesh
+    let mut all: Vec<u64> = mesh
         .triangles
         .iter()
         .flat_map(edges)
         .filter(|&(a, b)| at_end[a as usize] && at_end[b as usize])
-        .map(|(a, b)| (a.min(b), a.max(b), a < b))
+        .map(|(a, b)| pack(a, b))
         .collect();
-    sorted.sort_unstable();
-    let boundary = sorted
-        .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
-        .filter(|group| group.len() == 1);
-    let directed = boundary.map(|group| {
-        if group[0].2 {
-            (group[0].0, group[0].1)
-        } else {
-            (group[0].1, group[0].0)
-        }
-    });
-    let mut leaving: Vec<(u32, u32)> = directed.collect();
-    let mut entering: Vec<(u32, u32)> = leaving.iter().map(|&(a, b)| (b, a)).collect();
-    leaving.sort_unstable();
+    all.sort_unstable();
+    // Inner edges occur in both directions, boundary edges in one.
+    let turned = |&edge: &u64| edge.rotate_left(32);
+    let is_boundary = |edge: &u64| all.binary_search(&turned(edge)).is_err();
+    let leaving: Vec<u64> = all.iter().copied().filter(is_boundary).collect();
+    let mut entering: Vec<u64> = leaving.iter().map(turned).collect();
     entering.sort_unstable();
     let ends = leaving.iter().zip(&entering);
-    ends.map(|(&(vertex, next), &(_, previous))| End {
-        vertex,
-        previous,
-        next,
+    ends.map(|(&leaving, &entering)| {
+        let (vertex, next) = unpack(leaving);
+        End {
+            vertex,
+            previous: unpack(entering).1,
+            next,
+        }
     })
     .collect()
 }

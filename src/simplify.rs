@@ -15,9 +15,10 @@
 //! H. Hoppe et al., "Mesh optimization", 1993; M. Garland, P. Heckbert, "Surface simplification using quadric error
 //! metrics", 1997, for the order of collapses by a cost that is local.
 
-use crate::collapse::{Around, Collapse, Rules, Star, can_collapse};
+use crate::collapse::{Around, Collapse, Rules, Star, around, can_collapse};
 use crate::error::Result;
 use crate::extract::Mesh;
+use crate::lists::{key, pack, unpack};
 use crate::par;
 
 /// Curvature that every edge is taken to have on top of its own, as the turn of the normals along one edge of the
@@ -57,7 +58,7 @@ pub(crate) fn simplify(
         let done = (start - mesh.triangles.len()) as f32 / (start - most) as f32;
         let mut tell = || progress(done);
         let needed = (mesh.triangles.len() - most).div_ceil(2);
-        let around = Around::new(mesh);
+        let around = around(mesh);
         let count = needed.max(ranking.out.len() / LEAST_SHARE);
         let stale = ranking.to_look_at(count);
         for slice in stale.chunks(TASKS_PER_SLICE * VERTICES_PER_TASK) {
@@ -154,21 +155,21 @@ impl Ranking {
     }
 
     /// What the collapse of a vertex costs, as far as is known, -∞ where nothing is; `None` if there is none.
-    fn cost(&self, v: usize) -> Option<f64> {
+    fn cost(&self, v: usize) -> Option<f32> {
         match self.known[v] {
             _ if self.out[v] => None,
             Some(known) => Some(known.cost),
-            None => self.stale[v].then_some(f64::NEG_INFINITY),
+            None => self.stale[v].then_some(f32::NEG_INFINITY),
         }
     }
 
     /// The vertices, stale ones or the others, that are among the `count` cheapest of all, with their costs.
-    fn cheap(&self, count: usize, stale: bool) -> impl Iterator<Item = (f64, u32)> {
-        let mut costs: Vec<f64> = (0..self.out.len()).filter_map(|v| self.cost(v)).collect();
+    fn cheap(&self, count: usize, stale: bool) -> impl Iterator<Item = (f32, u32)> {
+        let mut costs: Vec<f32> = (0..self.out.len()).filter_map(|v| self.cost(v)).collect();
         let dearest = if count < costs.len() {
-            *costs.select_nth_unstable_by(count, f64::total_cmp).1
+            *costs.select_nth_unstable_by(count, f32::total_cmp).1
         } else {
-            f64::INFINITY
+            f32::INFINITY
         };
         let of_kind = (0..self.out.len()).filter(move |&v| self.stale[v] == stale);
         of_kind.filter_map(move |v| Some((self.cost(v).filter(|&c| c <= dearest)?, v as u32)))
@@ -181,9 +182,10 @@ impl Ranking {
 
     /// The others, in ascending order of cost.
     fn to_collapse(&self, count: usize) -> Vec<u32> {
-        let mut cheap: Vec<(f64, u32)> = self.cheap(count, false).collect();
-        cheap.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        cheap.into_iter().map(|c| c.1).collect()
+        let cheap = self.cheap(count, false);
+        let mut sorted: Vec<u64> = cheap.map(|(cost, v)| pack(key(cost), v)).collect();
+        sorted.sort_unstable();
+        sorted.into_iter().map(|cheap| unpack(cheap).1).collect()
     }
 }
 

@@ -6,6 +6,7 @@
 
 use crate::error::Result;
 use crate::features::Features;
+use crate::lists::{key, of_key, pack, unpack};
 use crate::noise::Scales;
 use crate::progress::{Part, Progress, Stage};
 use std::ops::RangeInclusive;
@@ -84,17 +85,19 @@ pub(crate) fn search(
 
 /// What `share` of the surface is below, as every point stands for its area.
 fn quantile(features: &Features, distances: Vec<f32>, share: f64) -> f64 {
-    let area = |&s: &f32| f64::from(s).powi(2);
-    let mut parts: Vec<(f32, f64)> = distances
+    let area = |i: u32| f64::from(features.spacing[i as usize]).powi(2);
+    let mut parts: Vec<u64> = distances
         .into_iter()
-        .zip(features.spacing.iter().map(area))
+        .zip(0..)
+        .map(|(distance, i)| pack(key(distance), i))
         .collect();
-    parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = parts.iter().map(|p| p.1).sum();
+    parts.sort_unstable();
+    let parts = || parts.iter().map(|&part| unpack(part));
+    let total: f64 = parts().map(|(_, i)| area(i)).sum();
     let mut below = 0.0;
-    let last = parts.iter().find(|part| {
-        below += part.1;
+    let last = parts().find(|&(_, i)| {
+        below += area(i);
         below >= share * total
     });
-    last.map_or(0.0, |part| f64::from(part.0))
+    last.map_or(0.0, |(distance, _)| f64::from(of_key(distance)))
 }

@@ -4,6 +4,7 @@
 
 use crate::dual::{Dual, Quad, Vertex};
 use crate::extract::MOST_FILLED;
+use crate::lists::{Lists, key, of_key, pack, unpack};
 use crate::octree::Octree;
 use crate::orient::SMALLEST;
 use crate::par;
@@ -142,7 +143,10 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         let rim = RIM * reaches[reaches.len() / 2];
         nearest.distance2 > rim * rim
     };
-    let around = quads_around(dual);
+    let around = Lists::new(dual.vertices.len(), || {
+        let quads = dual.quads.iter().zip(0u32..);
+        quads.flat_map(|(quad, q)| quad.vertices.map(|v| (v, q)))
+    });
     let mut dropped = vec![false; dual.quads.len()];
     while let Some(end) = ends.pop() {
         for &q in around.of(end) {
@@ -159,35 +163,6 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
     }
     let mut dropped = dropped.into_iter();
     dual.retain(|_| dropped.next() == Some(false));
-}
-
-/// Lists of quads by vertex.
-struct Around {
-    start: Vec<u32>,
-    quads: Vec<u32>,
-}
-
-impl Around {
-    fn of(&self, v: u32) -> &[u32] {
-        &self.quads[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
-    }
-}
-
-fn quads_around(dual: &Dual) -> Around {
-    let mut start = vec![0u32];
-    start.extend(dual.vertices.iter().scan(0u32, |sum, vertex| {
-        *sum += u32::from(vertex.quads);
-        Some(*sum)
-    }));
-    let mut next = start.clone();
-    let mut quads = vec![0; 4 * dual.quads.len()];
-    for (i, quad) in dual.quads.iter().enumerate() {
-        for v in quad.vertices {
-            quads[next[v as usize] as usize] = i as u32;
-            next[v as usize] += 1;
-        }
-    }
-    Around { start, quads }
 }
 
 /// Drops components that are no part of the surface: those that are the nearest one to fewer than [`LEAST_POINTS`] points
@@ -229,13 +204,13 @@ pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         let (others, tree) = (Octree::build(&others), Octree::build(points));
         let away = |(component, p): (u32, Vec3)| {
             let reach = reach[tree.order[tree.nearest(p).index as usize] as usize];
-            (component, others.nearest(p).distance2.sqrt() / reach)
+            pack(component, key(others.nearest(p).distance2.sqrt() / reach))
         };
-        let mut away: Vec<(u32, f32)> = pieces.into_iter().map(away).collect();
-        away.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        for piece in away.chunk_by(|a, b| a.0 == b.0) {
-            let (component, median) = piece[piece.len() / 2];
-            dropped[component as usize] |= median < LAYER;
+        let mut away: Vec<u64> = pieces.into_iter().map(away).collect();
+        away.sort_unstable();
+        for piece in away.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+            let (component, median) = unpack(piece[piece.len() / 2]);
+            dropped[component as usize] |= of_key(median) < LAYER;
         }
     }
     dual.retain(|quad| !dropped[of[quad.vertices[0] as usize] as usize]);
@@ -264,31 +239,60 @@ fn votes(positions: &[Vec3], component_of: &[u32], points: &[Vec3], count: usize
 /// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
 /// an open surface left some out there may be several.
 pub(crate) fn split_bow_ties(dual: &mut Dual) {
-    // (vertex, next corner, previous corner, quad, place there) of the quads around vertices at the surface's end.
+    // Vertices at the surface's end with their quads.
     let mut around = Vec::new();
-    for (i, quad) in dual.quads.iter().enumerate() {
-        let corner = |k: usize| quad.vertices[k % 4];
-        for k in (0..4).filter(|&k| dual.vertices[corner(k) as usize].is_at_end()) {
-            around.push((corner(k), corner(k + 1), corner(k + 3), i, k));
-        }
+    for (quad, q) in dual.quads.iter().zip(0u32..) {
+        let ends = quad.vertices.into_iter();
+        let ends = ends.filter(|&v| dual.vertices[v as usize].is_at_end());
+        around.extend(ends.map(|v| pack(v, q)));
     }
     around.sort_unstable();
-    for fans in around.chunk_by(|a, b| a.0 == b.0) {
-        let starts = fans.iter().filter(|a| fans.iter().all(|b| b.2 != a.1));
+    for fans in around.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+        let v = unpack(fans[0]).0;
+        let quads = fans.iter().map(|&fan| unpack(fan).1);
+        let sectors: Vec<Sector> = quads
+            .map(|q| Sector::of(v, q, &dual.quads[q as usize]))
+            .collect();
+        let starts = sectors
+            .iter()
+            .filter(|a| sectors.iter().all(|b| b.previous != a.next));
         for start in starts.skip(1) {
             let copy = dual.vertices.len() as u32;
             let mut vertex = Vertex {
                 quads: 0,
-                ..dual.vertices[start.0 as usize]
+                ..dual.vertices[v as usize]
             };
             let mut member = Some(start);
-            while let Some(&(_, _, previous, quad, k)) = member {
-                dual.quads[quad].vertices[k] = copy;
+            while let Some(sector) = member {
+                dual.quads[sector.quad].vertices[sector.place] = copy;
                 vertex.quads += 1;
-                member = fans.iter().find(|a| a.1 == previous);
+                member = sectors.iter().find(|a| a.next == sector.previous);
             }
-            dual.vertices[start.0 as usize].quads -= vertex.quads;
+            dual.vertices[v as usize].quads -= vertex.quads;
             dual.vertices.push(vertex);
+        }
+    }
+}
+
+/// A quad seen from one of its vertices.
+struct Sector {
+    quad: usize,
+    /// Of the vertex in the quad.
+    place: usize,
+    /// The corners after and before it.
+    next: u32,
+    previous: u32,
+}
+
+impl Sector {
+    fn of(v: u32, q: u32, quad: &Quad) -> Sector {
+        let corners = quad.vertices;
+        let place = corners.iter().position(|&w| w == v).unwrap_or(0);
+        Sector {
+            quad: q as usize,
+            place,
+            next: corners[(place + 1) % 4],
+            previous: corners[(place + 3) % 4],
         }
     }
 }
