@@ -91,6 +91,7 @@ export class Viewer {
       const layer = source.indices ? meshLayer(source, this.#frame) : cloudLayer(source, this.#frame);
       this.#layers.set(view, layer);
       this.#root.add(layer);
+      if (view === 'mesh') this.#orbit.include(/** @type {Float32Array} */ (layer.geometry.getAttribute('position').array));
     }
     this.#addEdges();
     this.#dress();
