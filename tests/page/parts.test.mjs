@@ -12,6 +12,7 @@ import { countHoles } from '../../www/src/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/settings.js';
 import { creases, sharpPoints } from '../../www/src/sharp.js';
 import { meaningOf } from '../../www/src/targets.js';
+import { likelyUp } from '../../www/src/upright.js';
 import { WORDS } from '../../www/src/words.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
@@ -131,11 +132,21 @@ test('a mesh that is better not relied on is said to be none', () => {
   assert.equal(doubtsAbout({ ...outcome([1, 2, 3], [0, 0, 0], 1), mesh: null }), '');
 });
 
+test('what was surveyed stands on its z, and so does what is flat', () => {
+  const scan = (size, cloud = {}) => /** @type {any} */ ({ cloud: { positions: new Float32Array(0), ...cloud }, frame: { size } });
+  assert.equal(likelyUp(scan([1, 2, 1])), 'Y');
+  assert.equal(likelyUp(scan([10, 20, 2])), 'Z');
+  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'las' } })), 'Z');
+  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'ply' } })), 'Y');
+  assert.equal(likelyUp(scan([3, 3, 3], { file: { format: 'xyz' }, origin: [5e5, 5e6, 0] })), 'Z');
+});
+
 test('what is kept, in words', () => {
   const scan = /** @type {any} */ ({ count: 1065, frame: { diagonal: 2 } });
   assert.equal(meaningOf({ kind: 'ratio', value: 0.2 }, scan), '213 of 1,065 points. Curved places keep more.');
-  assert.equal(meaningOf({ kind: 'ratio', value: 1 }, scan), 'All 1,065 points.');
-  assert.equal(meaningOf({ kind: 'count', value: 5000 }, scan), 'All 1,065 points.');
+  assert.equal(meaningOf({ kind: 'ratio', value: 1 }, scan), 'All of 1,065 points.');
+  assert.equal(meaningOf({ kind: 'count', value: 5000 }, scan), 'All of 1,065 points.');
+  assert.equal(meaningOf({ kind: 'count', value: 5000 }, { ...scan, count: 1 }), 'All of 1 point.');
 });
 
 test('every error code of the package has its words', async () => {

@@ -123,7 +123,7 @@ export class App {
     this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
     this.#saving.offer(outcome);
     this.#comparison.made(outcome);
-    const kept = `Done: ${format.count(reduced.positions.length / 3)} points kept`;
+    const kept = `Done: ${format.points(reduced.positions.length / 3)} kept`;
     announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
   }
 
@@ -179,7 +179,7 @@ export class App {
 /** What a scan holds, and what of its file was no point. */
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
   const { dropped = 0, faces = 0 } = cloud.file ?? {};
-  const points = faces ? `${format.count(count)} points, the corners of ${format.count(faces)} faces` : `${format.count(count)} points`;
+  const points = format.points(count) + (faces ? `, the corners of ${format.count(faces)} faces` : '');
   const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
   return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
 }

@@ -9,8 +9,8 @@ import * as format from './format.js';
 export function meaningOf(/** @type {Target} */ { kind, value }, /** @type {Scan | null} */ scan) {
   if (!scan) return 'Curved places keep more, flat places fewer.';
   const counted = (/** @type {number} */ kept) => kept < scan.count
-    ? `${format.count(kept)} of ${format.count(scan.count)} points. Curved places keep more.`
-    : `All ${format.count(scan.count)} points.`;
+    ? `${format.count(kept)} of ${format.points(scan.count)}. Curved places keep more.`
+    : `All of ${format.points(scan.count)}.`;
   switch (kind) {
     case 'ratio': return counted(Math.max(1, Math.round(scan.count * value)));
     case 'count': return counted(value);
