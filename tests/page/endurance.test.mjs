@@ -45,6 +45,34 @@ test('a job is cancelled in each of its stages, and the next one works', { timeo
   assert.deepEqual(site.faults, []);
 });
 
+test('a change while a job runs, and a cancel, lose nothing of what was measured', { timeout: 2 * PATIENCE }, async (t) => {
+  const server = await start(t);
+  const site = await server.open({}, undefined, `?src=${server.serve('ball.ply', toPly(spherePoints(60_000)))}#count=9000`);
+  const { page } = site;
+  await site.opened('ball.ply');
+  const stages = () => page.$$eval('#stages data', (rows) => rows.map((row) => row.dataset.stage));
+  assert.ok((await stages()).includes('features'));
+  await page.click('#more > summary');
+  /** Chooses another count, and waits until its points are being chosen. */
+  const begin = async (count) => {
+    await page.fill('#keep-field', String(count));
+    await page.waitForFunction((words) => document.querySelector('#progress-stage').textContent === words, STAGES.cluster, { polling: 'mutation' });
+  };
+  await begin(15_000);
+  await site.remade(() => page.selectOption('#option-boundary', 'open'));
+  assert.equal(await site.number('outputPoints'), 15_000);
+  const after = await stages();
+  assert.ok(after.includes('cluster') && !after.includes('features'), `measured once: ${after}`);
+
+  await begin(20_000);
+  await page.click('#cancel');
+  await page.fill('#keep-field', '15000');
+  await site.made();
+  const back = await stages();
+  assert.ok(back.includes('fit') && !back.includes('cluster') && !back.includes('features'), `reduced once: ${back}`);
+  assert.deepEqual(site.faults, []);
+});
+
 test('twenty scans in a row leave nothing behind', { timeout: 2 * PATIENCE }, async (t) => {
   const countObjects = (page) => page.addInitScript(() => {
     globalThis.alive = {};
