@@ -750,7 +750,7 @@ fn damaged_times_do_not_overflow_the_stack() {
     }
 }
 
-/// Found by fuzzing: zeros unpack to the same point over and over, hundreds a byte, as long as the header wants more.
+/// Found while fuzzing: zeros unpack to the same point over and over, hundreds a byte, as long as the header wants more.
 #[test]
 fn no_more_points_are_unpacked_than_a_scan_is_packed_to() {
     let packed = made::las(0, 30, (1, 3), true);
