@@ -1,5 +1,5 @@
 /**
- * The engine: one queue of calls, and one host (made when needed, made anew after an abort or a crash)
+ * The engine: one queue of calls, and one host (made when needed, made anew after a crash and after most aborts)
  * that does them.
  */
 import { awake } from './awake.js';
@@ -52,6 +52,8 @@ export class Engine {
   #tail = Promise.resolve();
   /** @type {Promise<Host> | undefined} */
   #host;
+  /** Ends when the host is free: a call that was aborted may have to stop first. @type {Promise<unknown>} */
+  #work = Promise.resolve();
   /** Calls that have not ended. */
   #calls = 0;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -196,13 +198,25 @@ export class Engine {
    */
   async #run(request, watch) {
     return this.#queued(watch, async (signal) => {
-      const host = await unlessAborted(this.#started(), signal);
-      try {
-        return signed(await host.run(request, { signal, onProgress: watch.onProgress }), this);
-      } finally {
-        if (!host.usable()) this.#host = undefined;
-      }
+      await unlessAborted(this.#work, signal);
+      const work = this.#ask(request, { signal, onProgress: watch.onProgress });
+      this.#work = work.then(nothing, nothing);
+      return work;
     });
+  }
+
+  /**
+   * Has the host do a request.
+   * @param {Request} request
+   * @param {Watch & { signal: AbortSignal }} watch
+   */
+  async #ask(request, watch) {
+    const host = await unlessAborted(this.#started(), watch.signal);
+    try {
+      return signed(await host.run(request, watch), this);
+    } finally {
+      if (!host.usable()) this.#host = undefined;
+    }
   }
 
   /**

@@ -32,6 +32,9 @@ import { PointweaveError, isFatal } from './errors.js';
  * @property {() => void} terminate
  */
 
+/** A call that keeps what it has measured may take so long to stop by itself; then its worker is terminated, as others are at once. */
+const GRACE_MS = 60;
+
 /** A pool that has not started by then never will, and the single-threaded build takes over. */
 const POOL_LIMIT_MS = 30_000;
 
@@ -103,8 +106,11 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
     fail(error);
   };
 
+  /** Not 0: the call under way is to stop. Where memory cannot be shared, a worker that computes hears nothing. */
+  const stop = typeof SharedArrayBuffer === 'function' ? new Int32Array(new SharedArrayBuffer(4)) : undefined;
+
   const start = async () => {
-    await main.ask({ start: { build, module, memory } });
+    await main.ask({ start: { build, module, memory, stop } });
     if (build !== 'threads' || !alive) return;
     workers.push(...Array.from({ length: threads }, () => connect(startWorker())));
     const pool = workers.slice(1);
@@ -129,7 +135,14 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
 
   return {
     async run(request, { signal, onProgress }) {
-      const abort = () => die(signal?.reason);
+      /** @type {ReturnType<typeof setTimeout> | undefined} */
+      let grace;
+      const abort = () => {
+        if (!stop || !keeps(request)) return die(signal?.reason);
+        Atomics.store(stop, 0, 1);
+        grace = setTimeout(() => die(signal?.reason), GRACE_MS);
+      };
+      if (stop) Atomics.store(stop, 0, 0);
       signal?.addEventListener('abort', abort);
       main.hold(true);
       try {
@@ -140,18 +153,26 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
             die(error);
           }
         });
-        return await Promise.race([answer, dead]);
+        const result = await Promise.race([answer, dead]);
+        if (!signal?.aborted) return result;
       } catch (error) {
         if (isFatal(error)) end();
-        throw error;
+        if (!signal?.aborted) throw error;
       } finally {
+        clearTimeout(grace);
         signal?.removeEventListener('abort', abort);
         main.hold(false);
       }
+      throw signal.reason;
     },
     usable: () => alive,
     end,
   };
+}
+
+/** Whether a request leaves something in the worker that the next one can use. @param {Request} request */
+function keeps({ args }) {
+  return /** @type {{ keep?: boolean } | undefined} */ (args[1])?.keep === true;
 }
 
 /**

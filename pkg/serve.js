@@ -1,6 +1,7 @@
 /**
  * The worker's side of {@link import('./hosts.js').workerHost}: starts one core, then answers one
- * request after the other. It is never asked to stop; who has enough of it terminates the worker.
+ * request after the other. Who has enough of it terminates the worker, or raises a flag in shared memory, which stops the
+ * request and leaves the core as it is.
  */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
@@ -8,7 +9,7 @@ import { toRecord } from './errors.js';
 import { loadGlue } from './glue.js';
 
 /**
- * @typedef {{ start: import('./core.js').CoreOptions } | { request: import('./core.js').Request }} ToWorker
+ * @typedef {{ start: import('./core.js').CoreOptions & { stop?: Int32Array } } | { request: import('./core.js').Request }} ToWorker
  * @typedef {{ value: any } | { error: import('./errors.js').ErrorRecord } | { progress: import('./types.js').Progress }} FromWorker
  */
 
@@ -19,15 +20,18 @@ import { loadGlue } from './glue.js';
 export function serve(port) {
   /** @type {Core} */
   let core;
+  /** @type {Int32Array | undefined} */
+  let stop;
 
   /** @param {ToWorker} message */
   const answer = async (message) => {
     if ('request' in message) {
       return core.run(message.request, (progress) => {
         port.post({ progress });
-        return false; // an abort terminates the worker
+        return stop !== undefined && Atomics.load(stop, 0) !== 0;
       });
     }
+    stop = message.start.stop;
     core = await Core.start(await loadGlue(message.start.build), message.start);
   };
 

@@ -144,7 +144,8 @@ export interface ReconstructOptions {
   /**
    * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
    * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
-   * bytes a point until a call without it, another cloud or an abort. Default `false`.
+   * bytes a point until a call without it or another cloud. An abort keeps what was done before it where memory can be shared,
+   * and forgets all elsewhere. Default `false`.
    */
   keep?: boolean;
 }

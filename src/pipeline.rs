@@ -262,16 +262,30 @@ pub fn reconstruct_again(
             Input::new(Cow::Owned(cloud), outliers(params), &mut clock)?
         }
     };
+    // Remembered from here on, so that a job that is stopped loses nothing of what was done before it.
+    let stray;
+    let input = if whole {
+        &*memory.input.insert(input)
+    } else {
+        stray = input;
+        &stray
+    };
     let Input {
         cloud,
         tree,
         features,
         origin,
-    } = &input;
+    } = input;
     check_extent(features)?;
-    let fitted = match memory.fitted.take() {
-        Some((reduce, fitted)) if reduce == params.reduce => fitted,
-        _ => points_to_fit(cloud, tree, features.clone(), params, &mut clock)?,
+    let fitted = match &memory.fitted {
+        Some((reduce, fitted)) if *reduce == params.reduce => fitted.clone(),
+        _ => {
+            let fitted = points_to_fit(cloud, tree, features.clone(), params, &mut clock)?;
+            if whole {
+                memory.fitted = Some((params.reduce.clone(), fitted.clone()));
+            }
+            fitted
+        }
     };
     let measured = Measured {
         points: tree.points.clone(),
@@ -279,10 +293,6 @@ pub fn reconstruct_again(
         noise: features.noise,
         origin: origin.clone(),
     };
-    if whole {
-        memory.fitted = Some((params.reduce.clone(), fitted.clone()));
-        memory.input = Some(input);
-    }
     surface(measured, fitted, params, clock)
 }
 

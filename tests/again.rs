@@ -94,3 +94,35 @@ fn another_cloud_is_measured_anew() {
         assert!(again(cloud, params, &mut memory).contains(&Stage::Features));
     }
 }
+
+#[test]
+fn a_job_that_is_stopped_loses_nothing_of_what_was_done_before() {
+    let duck = scan(Model::Duck, 1);
+    let params = SurfaceParams::default();
+    let sparse = SurfaceParams {
+        reduce: Some(ReduceParams {
+            target: Target::Count(700),
+            ..Default::default()
+        }),
+        ..Default::default()
+    };
+    let mut memory = Memory::default();
+    let stop = |params: &SurfaceParams, at: Stage, memory: &mut Memory| {
+        let mut until = |stage: Stage, _: f32| stage != at;
+        let stopped = reconstruct_again(duck.clone(), params, memory, &mut until);
+        assert!(matches!(stopped, Err(pointweave::Error::Cancelled)));
+    };
+    // Of a new cloud what was measured before the stop.
+    stop(&params, Stage::Fit, &mut memory);
+    let stages = again(&duck, &params, &mut memory);
+    assert!(!stages.contains(&Stage::Features) && !stages.contains(&Stage::Cluster));
+    // Of one that was made before the reduction, too, whatever the stopped job asked for.
+    for at in [Stage::Cluster, Stage::Place] {
+        stop(&sparse, at, &mut memory);
+        let stages = again(&duck, &params, &mut memory);
+        assert!(!stages.contains(&Stage::Features) && !stages.contains(&Stage::Cluster));
+    }
+    stop(&sparse, Stage::Extract, &mut memory);
+    let stages = again(&duck, &sparse, &mut memory);
+    assert!(!stages.contains(&Stage::Features) && !stages.contains(&Stage::Place));
+}

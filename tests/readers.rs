@@ -750,6 +750,41 @@ fn damaged_times_do_not_overflow_the_stack() {
     }
 }
 
+/// Found while fuzzing: zeros unpack to the same point over and over, hundreds a byte, as long as the header wants more.
+#[test]
+fn no_more_points_are_unpacked_than_a_scan_is_packed_to() {
+    let packed = made::las(0, 30, (1, 3), true);
+    let start = u32::from_le_bytes(*packed[96..].first_chunk().unwrap()) as usize;
+    let user = b"laszip encoded";
+    let record = packed.windows(user.len()).position(|w| w == user).unwrap() - 2;
+    let bomb = |points: u32| {
+        let mut file = packed[..start].to_vec();
+        file[107..111].copy_from_slice(&points.to_le_bytes());
+        // All points are one chunk.
+        file[record + 54] = 1;
+        file.extend([0; 4000]);
+        file
+    };
+    let (code, at) = failure(&bomb(u32::MAX), Format::Las);
+    assert_eq!((code, at), ("bad-file", Some(start as u64)));
+    check::check(&bomb(u32::MAX), &[Format::Las]);
+    assert_eq!(read(&bomb(100_000), Format::Las).unwrap().points(), 100_000);
+}
+
+/// Found by reading: a stride of 0 made any number of points of the bytes of one.
+#[test]
+fn a_stride_of_zero_is_none() {
+    let file = |count: usize| {
+        let json = format!(
+            r#"{{"accessors":[{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3"}}],"bufferViews":[{{"buffer":0,"byteLength":24,"byteStride":0}}],"buffers":[{{"byteLength":24}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"nodes":[{{"mesh":0}}],"scenes":[{{"nodes":[0]}}]}}"#
+        );
+        made::glb(&json, &[63; 24])
+    };
+    assert_eq!(read(&file(2), Format::Glb).unwrap().points(), 2);
+    assert_eq!(failure(&file(3), Format::Glb).0, "bad-file");
+    assert_eq!(failure(&file(1 << 26), Format::Glb).0, "bad-file");
+}
+
 /// Found by fuzzing: whether a file was text depended on how many bytes of it were at hand.
 #[test]
 fn stl_is_told_from_its_first_bytes_alone() {

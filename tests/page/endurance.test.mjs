@@ -28,8 +28,8 @@ test('a job is cancelled in each of its stages, and the next one works', { timeo
         pressed([document.querySelector('#app').dataset.state, performance.now() - since]);
       }).observe(document.querySelector('#progress-stage'), { childList: true, characterData: true, subtree: true });
     }), words);
-    // The first is another scan, of which nothing is known yet.
-    await (stopped.length ? page.click('#run') : site.drop('other ball.ply', toPly(spherePoints(40_001))));
+    // Every time another scan, of which nothing is known yet.
+    await site.drop(`ball ${stage}.ply`, toPly(spherePoints(40_001 + stopped.length)));
     const [state, ms] = await pressed;
     assert.equal(state, 'ready', stage);
     stopped.push(stage);
@@ -39,9 +39,38 @@ test('a job is cancelled in each of its stages, and the next one works', { timeo
     assert.equal(await page.getAttribute('#numbers', 'data-fresh'), 'false', 'numbers of before are not taken for new ones');
   }
   await site.remade(() => page.click('#run'));
-  assert.equal(await site.number('inputPoints'), 40_001);
+  assert.equal(await site.number('inputPoints'), 40_000 + stopped.length);
   assert.equal(await site.number('outputPoints'), 8000);
   assert.equal(await page.isVisible('#message'), false);
+  assert.deepEqual(site.faults, []);
+});
+
+test('a change while a job runs, and a cancel, lose nothing of what was measured', { timeout: 2 * PATIENCE }, async (t) => {
+  const server = await start(t);
+  const site = await server.open({}, undefined, `?src=${server.serve('ball.ply', toPly(spherePoints(60_000)))}#count=9000`);
+  const { page } = site;
+  await site.opened('ball.ply');
+  const stages = () => page.$$eval('#stages data', (rows) => rows.map((row) => row.dataset.stage));
+  assert.ok((await stages()).includes('features'));
+  await page.click('#more > summary');
+  /** Chooses another count, and waits until the page says that its points are being chosen. */
+  const begin = async (count) => {
+    await page.fill('#keep-field', String(count));
+    await page.waitForFunction((words) => document.querySelector('#progress-stage').textContent === words, STAGES.cluster, { timeout: PATIENCE });
+  };
+  await begin(15_000);
+  await site.remade(() => page.selectOption('#option-boundary', 'open'));
+  assert.equal(await site.number('outputPoints'), 15_000);
+  const after = await stages();
+  assert.ok(after.includes('fit') && !after.includes('features'), `measured once: ${after}`);
+
+  await begin(20_000);
+  await page.click('#cancel');
+  await page.fill('#keep-field', '15000');
+  await site.made();
+  const back = await stages();
+  assert.equal(await site.number('outputPoints'), 15_000);
+  assert.ok(back.includes('fit') && !back.includes('features'), `measured once: ${back}`);
   assert.deepEqual(site.faults, []);
 });
 

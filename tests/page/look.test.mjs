@@ -173,6 +173,30 @@ test('views and colours of a sphere whose left half is rough', { timeout: PATIEN
   assert.deepEqual(site.faults, []);
 });
 
+test('a mesh larger than its scan is seen whole, until somebody has looked around', { timeout: PATIENCE }, async (t) => {
+  // Eight corners: the mesh goes far beyond them.
+  const corners = Array.from({ length: 8 }, (_, i) => [i & 1, (i >> 1) & 1, i >> 2]);
+  const obj = `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf 1 2 4 3\nf 5 6 8 7\n`;
+  const site = await openScan(t, 'corners.obj', Buffer.from(obj));
+  const { page } = site;
+  assert.equal(await page.innerText('#caption-detail'), '8 points, the corners of 2 faces');
+  assert.match(await page.innerText('#doubt'), /not close to the points/);
+  const inside = (picture) => {
+    const { box, width, height } = silhouette(picture);
+    return box.left > 0 && box.top > 0 && box.left + box.width < width && box.top + box.height < height;
+  };
+  assert.ok(inside(await site.pictureOf('mesh')), 'nothing is cut off');
+  await page.focus('#canvas');
+  for (let k = 0; k < 4; k++) await page.keyboard.press('+');
+  const near = await site.picture();
+  await site.remade(async () => {
+    await page.click('#more > summary');
+    await page.uncheck('#option-sharp');
+  });
+  assert.ok(silhouette(await site.picture()).area > 0.9 * silhouette(near).area, 'the person has chosen the distance');
+  assert.deepEqual(site.faults, []);
+});
+
 test('sides, parallel lines, density and sharp places of the part', { timeout: PATIENCE }, async (t) => {
   const site = await (await start(t)).open({}, undefined, '#sample=part&count=9000');
   await site.made();

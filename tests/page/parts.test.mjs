@@ -4,11 +4,15 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import { DEFAULTS, reconstruct, reduce, sample } from 'pointweave';
+import { ticks } from '../../www/src/chart.js';
 import { UNKNOWN, colorAt, colorize } from '../../www/src/colormap.js';
 import { localSpacing } from '../../www/src/density.js';
+import { doubtsAbout } from '../../www/src/doubts.js';
 import { countHoles } from '../../www/src/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/settings.js';
 import { creases, sharpPoints } from '../../www/src/sharp.js';
+import { meaningOf } from '../../www/src/targets.js';
+import { likelyUp } from '../../www/src/upright.js';
 import { WORDS } from '../../www/src/words.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
@@ -103,6 +107,46 @@ test('settings: defaults are the package\'s, and an address brings back what was
   });
   again.read(new URLSearchParams('ratio=7&count=1.5&tolerance=&method=none&fuzzifier=x&sharp=maybe&toString=1&__proto__=2'));
   assert.equal(again.changed, false, 'nonsense is left out');
+});
+
+test('an axis has round values that tell how it runs, and not too many', () => {
+  for (const low of [1e-5, 3.1e-4, 0.02, 1, 306, 45_000]) {
+    for (const ratio of [1.4, 1.9, 3.6, 6.5, 12, 80, 500]) {
+      const found = ticks([low * ratio, low]);
+      assert.ok(found.length >= (ratio < 1.9 ? 1 : 2) && found.length <= 8, `${low} to ${low * ratio}: ${found}`);
+      assert.ok(found.every((value) => value >= low && value <= low * ratio));
+      assert.equal(new Set(found).size, found.length);
+    }
+  }
+  assert.deepEqual(ticks([306, 764, 2000]), [500, 1000, 2000]);
+  assert.deepEqual(ticks([0.0012, 0.0031, 0.0075]), [0.002, 0.003, 0.005, 0.007]);
+});
+
+test('a mesh that is better not relied on is said to be none', () => {
+  const outcome = (size, center, rms) => /** @type {any} */ ({ scan: { frame: { size, center } }, mesh: { report: { distance: { rms } } } });
+  assert.equal(doubtsAbout(outcome([1, 2, 3], [0, 0, 0], 5e-4)), '');
+  assert.match(doubtsAbout(outcome([1, 2, 3], [0, 0, 0], 0.03)), /not close/);
+  assert.match(doubtsAbout(outcome([0.0228, 0.0106, 39], [-95, 31, 60], 1e-4)), /degrees/);
+  assert.equal(doubtsAbout(outcome([0.02, 0.01, 39], [637_000, 849_000, 60], 1e-4)), '', 'a pole on a map in metres');
+  assert.equal(doubtsAbout(outcome([0.5, 0.5, 2], [0, 0, 0], 1e-4)), '', 'a statue in metres');
+  assert.equal(doubtsAbout({ ...outcome([1, 2, 3], [0, 0, 0], 1), mesh: null }), '');
+});
+
+test('what was surveyed stands on its z, and so does what is flat', () => {
+  const scan = (size, cloud = {}) => /** @type {any} */ ({ cloud: { positions: new Float32Array(0), ...cloud }, frame: { size } });
+  assert.equal(likelyUp(scan([1, 2, 1])), 'Y');
+  assert.equal(likelyUp(scan([10, 20, 2])), 'Z');
+  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'las' } })), 'Z');
+  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'ply' } })), 'Y');
+  assert.equal(likelyUp(scan([3, 3, 3], { file: { format: 'xyz' }, origin: [5e5, 5e6, 0] })), 'Z');
+});
+
+test('what is kept, in words', () => {
+  const scan = /** @type {any} */ ({ count: 1065, frame: { diagonal: 2 } });
+  assert.equal(meaningOf({ kind: 'ratio', value: 0.2 }, scan), '213 of 1,065 points. Curved places keep more.');
+  assert.equal(meaningOf({ kind: 'ratio', value: 1 }, scan), 'All of 1,065 points.');
+  assert.equal(meaningOf({ kind: 'count', value: 5000 }, scan), 'All of 1,065 points.');
+  assert.equal(meaningOf({ kind: 'count', value: 5000 }, { ...scan, count: 1 }), 'All of 1 point.');
 });
 
 test('every error code of the package has its words', async () => {

@@ -191,6 +191,68 @@ test('with keep, what would come out the same is not done again', async (t) => {
   for (const { report } of [first, fresh, forgotten]) assert.ok('features' in report.ms && 'cluster' in report.ms);
 });
 
+test('with keep, an abort leaves the worker and what it knew, where memory is shared', async (t) => {
+  const cloud = sphere(30_000);
+  for (const threads of [1, 2]) {
+    const { made, api } = counting();
+    const engine = await api.createEngine({ threads, worker: true });
+    t.after(() => engine.dispose());
+    const first = await engine.reconstruct(cloud, { keep: true });
+    const workers = made.workers;
+    for (const wanted of ['cluster', 'fit', 'extract']) {
+      const controller = new AbortController();
+      const reason = new Error(wanted);
+      let asked = 0;
+      const error = await rejection(engine.reconstruct(cloud, {
+        keep: true,
+        reduce: { target: { count: 8000 } },
+        signal: controller.signal,
+        onProgress({ stage }) {
+          if (asked || stage !== wanted) return;
+          asked = performance.now();
+          controller.abort(reason);
+        },
+      }));
+      assert.ok(performance.now() - asked < 100, `took ${performance.now() - asked} ms`);
+      assert.equal(error, reason);
+    }
+    const again = await engine.reconstruct(cloud, { keep: true, boundary: 'open' });
+    assert.equal(made.workers, workers, 'no worker was made anew');
+    assert.ok(!('features' in again.report.ms), 'what was measured is not measured again');
+    assert.deepEqual(again.cloud.positions, first.cloud.positions);
+  }
+});
+
+test('with keep, a worker that does not stop by itself is ended within 100 ms', async (t) => {
+  let workers = 0;
+  const { api } = counting({
+    startWorker() {
+      const worker = platform.startWorker();
+      workers++;
+      // It never hears of the flag.
+      return { ...worker, post: (message, transfer) => worker.post('start' in message ? { start: { ...message.start, stop: undefined } } : message, transfer) };
+    },
+  });
+  const engine = await api.createEngine({ threads: 1, worker: true });
+  t.after(() => engine.dispose());
+  const controller = new AbortController();
+  let asked = 0;
+  const aborted = rejection(engine.reconstruct(large, {
+    keep: true,
+    signal: controller.signal,
+    onProgress({ stage }) {
+      if (asked || stage !== 'cluster') return;
+      asked = performance.now();
+      controller.abort('enough');
+    },
+  }));
+  const next = aborted.then(() => engine.reduce(sphere(500)));
+  assert.equal(await aborted, 'enough');
+  assert.ok(performance.now() - asked < 100);
+  assert.equal((await next).positions.length / 3, 167);
+  assert.equal(workers, 2, 'it has a fresh one');
+});
+
 test('progress goes through the stages, never back, and ends at 1', async (t) => {
   for (const worker of [false, true]) {
     const engine = await engineFor(t, { threads: 1, worker });

@@ -111,7 +111,7 @@ export class App {
     byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
     byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
     this.#look.opened(scan);
-    this.#numbers.opened(scan.count);
+    this.#numbers.opened(scan);
     this.#saving.offer(null);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
@@ -123,7 +123,7 @@ export class App {
     this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
     this.#saving.offer(outcome);
     this.#comparison.made(outcome);
-    const kept = `Done: ${format.count(reduced.positions.length / 3)} points kept`;
+    const kept = `Done: ${format.points(reduced.positions.length / 3)} kept`;
     announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
   }
 
@@ -178,7 +178,8 @@ export class App {
 
 /** What a scan holds, and what of its file was no point. */
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
-  const dropped = cloud.file?.dropped ?? 0;
+  const { dropped = 0, faces = 0 } = cloud.file ?? {};
+  const points = format.points(count) + (faces ? `, the corners of ${format.count(faces)} faces` : '');
   const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
-  return `${model ? 'simulated scan, ' : ''}${format.count(count)} points${rest}`;
+  return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
 }

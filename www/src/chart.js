@@ -56,14 +56,22 @@ function scaleOf(values, from, to) {
   return (/** @type {number} */ value) => from + ((Math.log(Math.max(value, 1e-12)) - low) / span) * (to - from);
 }
 
-/** Round values, one or two to a power of ten, inside of what is shown. */
-function ticks(/** @type {number[]} */ values) {
+/** First digits of round values, from few to many to a power of ten. */
+const DIGITS = [[1], [1, 3], [1, 2, 5], [1, 2, 3, 5, 7], [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9]];
+/** So many values and no fewer tell how an axis runs, where the dots are far enough apart. */
+const FEWEST_TICKS = 3;
+
+/** Round values inside of what is shown: as few as tell how the axis runs. */
+export function ticks(/** @type {number[]} */ values) {
   const [low, high] = [Math.min(...values), Math.max(...values)];
-  const found = [];
-  for (let power = Math.floor(Math.log10(low || 1e-12)); 10 ** power <= high; power++) {
-    for (const digit of high / low < 6 ? [1, 2, 3, 5, 7] : [1, 3]) found.push(digit * 10 ** power);
-  }
-  return found.filter((value) => value >= low && value <= high);
+  const choices = DIGITS.map((digits) => {
+    const found = [];
+    for (let power = Math.floor(Math.log10(low || 1e-12)); 10 ** power <= high; power++) {
+      for (const digit of digits) found.push(Number((digit * 10 ** power).toPrecision(2)));
+    }
+    return found.filter((value) => value >= low && value <= high);
+  });
+  return choices.find((found) => found.length >= FEWEST_TICKS) ?? choices[choices.length - 1];
 }
 
 /** @param {string} name @param {Record<string, unknown>} attributes @returns {SVGElement} */

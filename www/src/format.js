@@ -6,6 +6,8 @@ const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumSignif
 
 export const count = (/** @type {number} */ n) => whole.format(n);
 
+export const points = (/** @type {number} */ n) => `${count(n)} ${n === 1 ? 'point' : 'points'}`;
+
 /** As on an axis: 30K, 1.5M. */
 export const short = (/** @type {number} */ n) => compact.format(n);
 

@@ -3,6 +3,7 @@ import { Legend } from './legend.js';
 import { PAINTS, isPossible, paintOf } from './paints.js';
 import { Split } from './split.js';
 import { followTheme } from './theme.js';
+import { likelyUp } from './upright.js';
 import { Viewer } from './viewer.js';
 
 /**
@@ -86,7 +87,7 @@ export class Look {
     this.#outcome = null;
     if (!this.#wished) this.#chosen = null;
     this.#wished = false;
-    this.#viewer?.open(scan.cloud, scan.frame);
+    this.#viewer?.open(scan.cloud, scan.frame, likelyUp(scan));
     for (const view of VIEWS) radio('view', view).disabled = view !== 'points';
     this.#offerPaints();
     this.#show('points');

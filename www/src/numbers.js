@@ -1,10 +1,11 @@
 import { byId } from './dom.js';
 import { copyText } from './clipboard.js';
+import { doubtsAbout } from './doubts.js';
 import * as format from './format.js';
 import { countHoles } from './holes.js';
 import { stageWords } from './stages.js';
 
-/** @import { Outcome } from './session.js' */
+/** @import { Outcome, Scan } from './session.js' */
 
 /**
  * The panel of results. Each number is a `data` element: what it shows is for people, its `value` attribute is
@@ -16,6 +17,7 @@ export class Numbers {
   #reason = byId('engine-reason', HTMLElement);
   #stages = byId('stages', HTMLUListElement);
   #summary = byId('made-summary', HTMLElement);
+  #doubt = byId('doubt', HTMLElement);
   #json = '';
 
   constructor() {
@@ -23,10 +25,13 @@ export class Numbers {
     copy.addEventListener('click', () => copyText(this.#json, copy));
   }
 
-  /** A new scan: only its size is known. */
-  opened(/** @type {number} */ inputPoints) {
+  /** A new scan: only its size and its place are known. */
+  opened(/** @type {Scan} */ { count, cloud: { origin } }) {
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
-    this.#set('inputPoints', inputPoints, format.count);
+    this.#set('inputPoints', count, format.count);
+    this.#doubt.hidden = true;
+    byId('origin', HTMLElement).hidden = !origin;
+    ['X', 'Y', 'Z'].forEach((axis, i) => this.#set(`origin${axis}`, origin?.[i], format.count));
     this.#engine.textContent = '–';
     this.#reason.textContent = '';
     this.#summary.textContent = '';
@@ -53,6 +58,8 @@ export class Numbers {
     this.#set('components', mesh?.report.components, format.count);
     this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
     this.#set('totalMs', report.totalMs, format.duration);
+    this.#doubt.textContent = doubtsAbout({ scan, mesh });
+    this.#doubt.hidden = !this.#doubt.textContent;
     const { mean, rms, max } = report.distance;
     for (const [name, share] of Object.entries({ errorMean: mean, errorRms: rms, errorMax: max })) {
       this.#set(name, share * scan.frame.diagonal, format.length);
@@ -60,9 +67,9 @@ export class Numbers {
     }
     this.#engine.textContent = engineWords(report);
     this.#reason.textContent = sentence(report.reason);
-    this.#summary.textContent = `${format.duration(report.totalMs)}, ${engineWords(report)}`;
-    const { title, count, frame } = scan;
-    this.#json = JSON.stringify({ scan: { title, count, size: frame.size, diagonal: frame.diagonal }, settings, report }, null, 2);
+    this.#summary.textContent = format.duration(report.totalMs);
+    const { title, count, frame: { size, diagonal }, cloud: { origin } } = scan;
+    this.#json = JSON.stringify({ scan: { title, count, size, diagonal, origin }, settings, report }, null, 2);
     byId('copy-json', HTMLButtonElement).disabled = false;
     this.#showStages(report.ms);
     this.#box.dataset.fresh = 'true';

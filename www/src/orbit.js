@@ -45,8 +45,12 @@ export class Orbit {
   #up = 0;
   /** Whether lines that are parallel look parallel: an orthographic projection instead of perspective. */
   #parallel = false;
-  /** @type {Float32Array} a few points of the scan, in the viewer's frame */
+  /** @type {Float32Array} a few points of the scan and of its mesh, in the viewer's frame */
   #outline = new Float32Array();
+  /** @type {Float32Array} those of the scan */
+  #scan = new Float32Array();
+  /** Nobody has moved the camera since the scan came. */
+  #untouched = true;
   /** @type {Flight | null} */
   #flight = null;
   #updating = false;
@@ -65,7 +69,10 @@ export class Orbit {
     this.#controls.minDistance = 0.02;
     this.#controls.maxDistance = 12;
     this.#controls.zoomSpeed = 1.4;
-    this.#controls.addEventListener('start', () => (this.#flight = null));
+    this.#controls.addEventListener('start', () => {
+      this.#flight = null;
+      this.#untouched = false;
+    });
     // What moves while a picture is made is in that picture; only a movement that dies away needs another.
     this.#controls.addEventListener('change', () => {
       if (!this.#updating || this.#controls.enableDamping) changed();
@@ -78,14 +85,19 @@ export class Orbit {
 
   /** Takes a new scan: its points, and which axis is most likely up. */
   frame(/** @type {Float32Array} */ points, /** @type {'Y' | 'Z'} */ up) {
-    const stride = 3 * Math.max(1, Math.floor(points.length / 3 / 4096));
-    const picked = [];
-    for (let i = 0; i < points.length; i += stride) picked.push(points[i], points[i + 1], points[i + 2]);
-    this.#outline = Float32Array.from(picked);
+    this.#scan = this.#outline = someOf(points);
     this.#stand(UPS.findIndex(({ name }) => name === up));
     this.#camera.position.copy(FIRST_LOOK);
     this.#controls.target.set(0, 0, 0);
     this.fit({ animated: false });
+    this.#untouched = true;
+  }
+
+  /** Takes the mesh of the scan. One that is larger than the picture is fitted in, unless the person has looked around. */
+  include(/** @type {Float32Array} */ vertices) {
+    this.#outline = Float32Array.of(...this.#scan, ...someOf(vertices));
+    const direction = this.#camera.position.clone().sub(this.#controls.target).normalize();
+    if (this.#untouched && this.#distanceToFit(direction) > FIT_MARGIN * this.distance) this.fit({ animated: false });
   }
 
   /** Stands the scan on its next side and says which axis is up now. */
@@ -119,6 +131,7 @@ export class Orbit {
 
   /** Looks straight at one side, in parallel projection, with the whole scan in the picture. */
   look(/** @type {Side} */ side) {
+    this.#untouched = false;
     const [theta, phi] = SIDES[side];
     this.#parallel = true;
     const from = this.#spherical();
@@ -131,6 +144,7 @@ export class Orbit {
 
   /** Turns around the scan. @param {number} right @param {number} over  radians */
   turn(right, over) {
+    this.#untouched = false;
     const place = this.#spherical();
     place.theta += right;
     place.phi = MathUtils.clamp(place.phi - over, 0.01, Math.PI - 0.01);
@@ -139,6 +153,7 @@ export class Orbit {
 
   /** @param {number} factor  under 1 comes nearer */
   zoom(factor) {
+    this.#untouched = false;
     const place = this.#spherical();
     place.radius = MathUtils.clamp(place.radius * factor, this.#controls.minDistance, this.#controls.maxDistance);
     this.#place(place, this.#controls.target);
@@ -208,6 +223,14 @@ export class Orbit {
     }
     return distance;
   }
+}
+
+/** So many points that their outline is that of all. */
+function someOf(/** @type {Float32Array} */ points) {
+  const stride = 3 * Math.max(1, Math.floor(points.length / 3 / 4096));
+  const picked = [];
+  for (let i = 0; i < points.length; i += stride) picked.push(points[i], points[i + 1], points[i + 2]);
+  return Float32Array.from(picked);
 }
 
 /**

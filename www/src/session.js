@@ -1,6 +1,7 @@
 import { createEngine, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { frameOf } from './frame.js';
+import { splitOrigin } from './origin.js';
 import { SAMPLES } from './samples.js';
 import { Settings, TARGETS } from './settings.js';
 
@@ -160,7 +161,7 @@ export class Session extends EventTarget {
   async #open(source, load) {
     const job = this.#begin('reading');
     try {
-      const cloud = await load(job.signal);
+      const cloud = splitOrigin(await load(job.signal));
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });

@@ -8,10 +8,12 @@ import * as format from './format.js';
 /** What a target means for the open scan, in a sentence. */
 export function meaningOf(/** @type {Target} */ { kind, value }, /** @type {Scan | null} */ scan) {
   if (!scan) return 'Curved places keep more, flat places fewer.';
-  const all = `of ${format.count(scan.count)} points. Curved places keep more.`;
+  const counted = (/** @type {number} */ kept) => kept < scan.count
+    ? `${format.count(kept)} of ${format.points(scan.count)}. Curved places keep more.`
+    : `All of ${format.points(scan.count)}.`;
   switch (kind) {
-    case 'ratio': return `${format.count(Math.max(1, Math.round(scan.count * value)))} ${all}`;
-    case 'count': return `${format.count(Math.min(scan.count, value))} ${all}`;
+    case 'ratio': return counted(Math.max(1, Math.round(scan.count * value)));
+    case 'count': return counted(value);
     case 'tolerance': return `The fewest points that stay within ${format.length(value * scan.frame.diagonal)} of the scan.`;
     case 'flatness': return 'Flat places are thinned, all others kept as they are.';
   }

@@ -69,13 +69,13 @@ export class Viewer {
   }
 
   /** Starts over with a new scan: forgets the layers of the old one, and fits the view. */
-  open(/** @type {Drawable} */ cloud, /** @type {Frame} */ frame) {
+  open(/** @type {Drawable} */ cloud, /** @type {Frame} */ frame, /** @type {'Y' | 'Z'} */ up) {
     for (const view of /** @type {View[]} */ (['points', 'reduced', 'mesh'])) this.set(view, null);
     this.showBoxes(null);
     this.#frame = frame;
     this.set('points', { ...cloud, normals: undefined });
     this.#resize();
-    this.#orbit.frame(toFrame(cloud, frame), likelyUp(frame));
+    this.#orbit.frame(toFrame(cloud, frame), up);
   }
 
   /** Replaces one layer, or removes it. */
@@ -91,6 +91,7 @@ export class Viewer {
       const layer = source.indices ? meshLayer(source, this.#frame) : cloudLayer(source, this.#frame);
       this.#layers.set(view, layer);
       this.#root.add(layer);
+      if (view === 'mesh') this.#orbit.include(/** @type {Float32Array} */ (layer.geometry.getAttribute('position').array));
     }
     this.#addEdges();
     this.#dress();
@@ -218,9 +219,4 @@ export class Viewer {
       this.#renderer.render(this.#scene, this.#camera);
     }
   }
-}
-
-/** Land and rooms are wide and flat with z up; objects come with y up more often. */
-function likelyUp(/** @type {Frame} */ { size: [x, y, z] }) {
-  return z < 0.25 * Math.min(x, y) ? 'Z' : 'Y';
 }

@@ -47,7 +47,9 @@ impl<'a> Accessor<'a> {
                     .get(view)
                     .filter(|view| view.buffer == 0)
                     .ok_or_else(|| wrong("no buffer view"))?;
-                let stride = stride.or(view.byte_stride).unwrap_or(size);
+                // In files after glTF 1.0, 0 means one value behind the other.
+                let own = view.byte_stride.filter(|&stride| stride > 0);
+                let stride = stride.or(own).unwrap_or(size);
                 let bytes = within(view, offset, buffer)
                     .ok_or_else(|| wrong("bytes beyond the end of the data"))?;
                 let needed = count

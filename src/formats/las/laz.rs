@@ -19,6 +19,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Bytes of a variable length record before its content.
 const RECORD_HEADER: usize = 54;
 
+/// No scan is packed to more points a byte: points that are all the same come to 150 in chunks of the usual size. What claims
+/// more is damaged, and would unpack to thousands of times its size.
+const MOST_A_BYTE: u64 = 256;
+
 /// How the points are laid out.
 #[derive(Clone, Copy, PartialEq)]
 enum Layout {
@@ -157,6 +161,9 @@ impl Laz {
         let points = said.min(left);
         if points == 0 {
             return Err(bad(format!("no point, and {left} to come")));
+        }
+        if points / MOST_A_BYTE > chunk.len() as u64 {
+            return Err(bad(format!("{points} points in {} bytes", chunk.len())));
         }
         let taken = guarded(|| self.unpack(chunk, points, &mut push)).map_err(bad)?;
         self.at = match entry {
