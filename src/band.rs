@@ -6,7 +6,7 @@
 //!    sheet is met is followed to its end, and the field is evaluated hardly anywhere else.
 //! 3. Cells with a corner that no fitted function reaches wait. Where holes are to be closed they come next, with the
 //!    global values at those corners, and the walk goes on until the surface is closed: the hull of the lattice is
-//!    outside.
+//!    outside. A whole brick away from what is fitted the global value is smooth: it is asked for at 27 of 512 vertices.
 
 use crate::error::Result;
 use crate::extract::Implicit;
@@ -42,6 +42,8 @@ struct Band<'a, F: Implicit> {
     waiting: Vec<Place>,
     /// Corners that no function reaches take the global value.
     closing: bool,
+    /// By brick, vertices that are to be evaluated; empty between two rounds.
+    wanted: Vec<Bits>,
     crossed: usize,
     evaluated: usize,
 }
@@ -61,6 +63,7 @@ pub(crate) fn grow<F: Implicit>(
         pending: Vec::new(),
         waiting: Vec::new(),
         closing: false,
+        wanted: Vec::new(),
         crossed: 0,
         evaluated: 0,
     };
@@ -126,7 +129,8 @@ impl<F: Implicit> Band<'_, F> {
         tasks: &[Task],
         report: &mut impl FnMut(usize) -> Result<()>,
     ) -> Result<()> {
-        let mut wanted: Vec<Bits> = vec![Bits::default(); self.lattice.bricks.len()];
+        let mut wanted = std::mem::take(&mut self.wanted);
+        wanted.resize(self.lattice.bricks.len(), Bits::default());
         let mut bricks: Vec<(u32, usize)> = Vec::new();
         for task in tasks {
             for c in 0..8 {
@@ -139,9 +143,13 @@ impl<F: Implicit> Band<'_, F> {
                 }
             }
         }
-        bricks
-            .iter_mut()
-            .for_each(|(b, n)| *n = wanted[*b as usize].len());
+        for (b, n) in &mut bricks {
+            let wanted = &mut wanted[*b as usize];
+            if self.closing && self.lattice.is_far(*b) {
+                *wanted = self.lattice.bricks[*b as usize].known.others();
+            }
+            *n = wanted.len();
+        }
         let mut rest = &bricks[..];
         while !rest.is_empty() {
             let mut vertices = 0;
@@ -176,6 +184,10 @@ impl<F: Implicit> Band<'_, F> {
             report(self.evaluated)?;
             rest = later;
         }
+        for (b, _) in bricks {
+            wanted[b as usize] = Bits::default();
+        }
+        self.wanted = wanted;
         Ok(())
     }
 
@@ -191,9 +203,13 @@ impl<F: Implicit> Band<'_, F> {
         at.extend(wanted.iter().map(|i| self.lattice.position((b, i))));
         values.clear();
         values.resize(at.len(), f64::NAN);
+        let far = (self.closing && self.lattice.is_far(b)).then(|| {
+            let at = |d: IVec3| self.lattice.beyond(b, d);
+            Smooth::new(|d| self.field.global(at(d), scratch))
+        });
         // A known vertex is asked for again only where no fitted function reaches it.
         let known = &self.lattice.bricks[b as usize].known;
-        if !wanted.iter().all(|i| known.has(i)) {
+        if far.is_none() && !wanted.iter().all(|i| known.has(i)) {
             self.field.locals(at, values, scratch);
         }
         let result = |(k, i): (usize, usize)| {
@@ -204,6 +220,8 @@ impl<F: Implicit> Band<'_, F> {
                 (f32::NAN, false)
             } else if on_hull {
                 (self.lattice.edge as f32, false)
+            } else if let Some(smooth) = &far {
+                (smooth.at(i) as f32, false)
             } else {
                 (self.field.global(at[k], scratch) as f32, false)
             }
@@ -251,6 +269,33 @@ impl<F: Implicit> Band<'_, F> {
     }
 }
 
+/// A function at a brick's vertices, quadratic along each axis between its values at the first, the fifth and the one after
+/// the last.
+struct Smooth([f64; 27]);
+
+impl Smooth {
+    /// `value` is asked for by offsets from the brick's first vertex.
+    fn new(mut value: impl FnMut(IVec3) -> f64) -> Smooth {
+        let node = |k: i32| 4 * IVec3::new(k % 3, k / 3 % 3, k / 9);
+        Smooth(std::array::from_fn(|k| value(node(k as i32))))
+    }
+
+    fn at(&self, i: usize) -> f64 {
+        let [x, y, z] = [i & 7, i >> 3 & 7, i >> 6].map(|place| {
+            let t = place as f64 / 4.0;
+            [
+                (1.0 - t) * (2.0 - t) / 2.0,
+                t * (2.0 - t),
+                t * (t - 1.0) / 2.0,
+            ]
+        });
+        let nodes = self.0.iter().enumerate();
+        nodes
+            .map(|(k, value)| x[k % 3] * y[k / 3 % 3] * z[k / 9] * value)
+            .sum()
+    }
+}
+
 /// [`Stage::Extract`] from `start` to `end`, never going back.
 pub(crate) fn span<'a>(
     progress: &'a mut dyn Progress,
@@ -261,5 +306,25 @@ pub(crate) fn span<'a>(
     move |fraction| {
         most = most.max(start + (end - start) * fraction);
         progress.update(Stage::Extract, most)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A patch a brick away, as big as a brick, seen from everywhere in the brick.
+    #[test]
+    fn a_far_brick_is_smooth() {
+        let angle = |d: IVec3| {
+            let patch = DVec3::new(3.0, 20.0, 5.0);
+            crate::kernel::solid_angle(patch - d.as_dvec3(), DVec3::new(20.0, 60.0, 10.0))
+        };
+        let smooth = Smooth::new(angle);
+        for i in 0..512 {
+            let d = IVec3::new(i as i32 & 7, i as i32 >> 3 & 7, i as i32 >> 6);
+            let exact = angle(d);
+            assert!((smooth.at(i) - exact).abs() < 0.03 * exact, "{d}");
+        }
     }
 }

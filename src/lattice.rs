@@ -23,6 +23,11 @@ impl Bits {
         new
     }
 
+    /// All that are not in.
+    pub(crate) fn others(&self) -> Bits {
+        Bits(self.0.map(|word| !word))
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.0.iter().map(|w| w.count_ones() as usize).sum()
     }
@@ -158,6 +163,11 @@ impl Lattice {
         self.bricks[brick as usize].at + coordinates(i)
     }
 
+    /// Position in the unit frame of what is `d` beyond a brick's first vertex.
+    pub(crate) fn beyond(&self, brick: u32, d: IVec3) -> DVec3 {
+        self.origin + self.edge * (self.bricks[brick as usize].at + d).as_dvec3()
+    }
+
     /// Position in the unit frame.
     pub(crate) fn position(&self, place: Place) -> DVec3 {
         self.origin + self.edge * self.at(place).as_dvec3()
@@ -181,6 +191,13 @@ impl Lattice {
     pub(crate) fn is_fitted(&self, cell: Place) -> bool {
         let fitted = |(b, i): Place| self.bricks[b as usize].fitted.has(i);
         (0..8).all(|c| self.shifted(cell, corner(c)).is_some_and(fitted))
+    }
+
+    /// Whether no fitted function reaches a brick or one around it, as far as is known.
+    pub(crate) fn is_far(&self, brick: u32) -> bool {
+        let near = self.bricks[brick as usize].near.iter();
+        let mut there = near.filter(|&&b| b != NONE);
+        there.all(|&b| self.bricks[b as usize].fitted.len() == 0)
     }
 
     /// Whether a vertex is on the hull of the lattice.

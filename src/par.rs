@@ -15,7 +15,14 @@ pub fn map<S, T>(
     f: impl Fn(usize, &mut S) -> T + Sync + Send,
 ) -> Vec<T> {
     let mut s = scratch();
-    (0..n).map(|i| f(i, &mut s)).collect()
+    (0..n).map(|i| call(&f, i, &mut s)).collect()
+}
+
+/// `f(i, s)`, in a function of its own. A browser compiles a function quickly and badly at first, and well while it runs, for
+/// its next call: what a stage does for every index must not become part of a function that is called once.
+#[inline(never)]
+fn call<S, T>(f: &impl Fn(usize, &mut S) -> T, i: usize, s: &mut S) -> T {
+    f(i, s)
 }
 
 /// `f(0), f(1), … f(n-1)`, in that order. `scratch` makes the reusable memory of one worker; what is left in it from
@@ -44,7 +51,9 @@ pub fn map<S, T: Send>(
             };
             let s = memory.get_or_insert_with(&scratch);
             let start = |part| (n as u64 * part as u64 / parts as u64) as usize;
-            let values = (start(part)..start(part + 1)).map(|i| f(i, s)).collect();
+            let values = (start(part)..start(part + 1))
+                .map(|i| call(&f, i, s))
+                .collect();
             *result.lock().unwrap_or_else(PoisonError::into_inner) = values;
         }
     });

@@ -204,6 +204,8 @@ fn optimise(build: Build, wasm: &Path) -> Result<()> {
         wasm_opt.arg("--enable-threads");
     }
     let before = size(wasm);
+    // Without a limit it would undo `par::call`.
+    wasm_opt.args(["--one-caller-inline-max-function-size", "20"]);
     wasm_opt.arg("-O3").arg(wasm).arg("-o").arg(wasm);
     run(&mut wasm_opt, "wasm-opt failed; its error is above")?;
     let after = size(wasm);
