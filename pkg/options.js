@@ -114,6 +114,7 @@ const MODEL = choice('duck', 'pig', 'part');
 const SAMPLE = {
   count: integer(1, 10_000_000),
   seed: integer(0, Number.MAX_SAFE_INTEGER, 0),
+  noise: number(0, 0.01, { fallback: 5e-4 }),
 };
 
 export const ENGINE = {

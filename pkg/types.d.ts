@@ -338,6 +338,8 @@ export interface SampleOptions {
   count?: number;
   /** An integer from 0. Default 0. */
   seed?: number;
+  /** Standard deviation of the range, a fraction of the bounding-box diagonal, 0 to 0.01. Default 5e-4, a good hand-held scanner. */
+  noise?: number;
 }
 
 export type Build = 'threads' | 'single';

@@ -126,15 +126,22 @@ struct SampleOptions {
     count: Option<usize>,
     #[serde(default)]
     seed: u64,
+    noise: Option<f64>,
 }
 
-/// [`samples::sample`] of `{ model, count, seed }`: a cloud with colours.
+/// [`samples::sample_with_noise`] of `{ model, count, seed, noise }`: a cloud with colours.
 #[wasm_bindgen]
 pub fn sample(options: JsValue) -> JsResult {
-    let SampleOptions { model, count, seed } = from_js(options)?;
+    let SampleOptions {
+        model,
+        count,
+        seed,
+        noise,
+    } = from_js(options)?;
     let model =
         Model::from_name(&model).ok_or_else(|| bad_option("model", "duck, pig or part", &model))?;
-    let scan = samples::sample(model, count.unwrap_or(model.default_points()), seed);
+    let count = count.unwrap_or(model.default_points());
+    let scan = samples::sample_with_noise(model, count, seed, noise.unwrap_or(samples::NOISE));
     object([
         ("positions", Float32Array::from(&scan.positions[..]).into()),
         ("colors", Uint8Array::from(&scan.colors[..]).into()),

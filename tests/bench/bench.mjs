@@ -1,7 +1,8 @@
 // `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
-//   growth   the reduction of ten thousand to ten million points: time and memory a point
+//   growth   the reduction of ten thousand to ten million points, a mesh of a hundred thousand to five million: time and
+//            memory a point
 //   fcm      our clustering beside scikit-fuzzy's
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
 //   surface  from points to a mesh beside Open3D: normals, their orientation, Poisson
@@ -28,7 +29,9 @@ const PAPER = {
 };
 
 /** `growth`: points, and how often each size runs. */
-const SIZES = [[1e4, 9], [1e5, 5], [1e6, 1], [1e7, 1]];
+const SIZES = { reduce: [[1e4, 9], [1e5, 5], [1e6, 1], [1e7, 1]], reconstruct: [[1e5, 3], [1e6, 1], [5e6, 1]] };
+/** The noise of a sample, as a fraction of its diagonal. */
+const NOISE = 5e-4;
 
 /** `fcm`: the same for both sides. */
 const FCM = { ratio: 1 / 8, cellPoints: 256, fuzzifier: 2, epsilon: 1e-3, maxIterations: 100 };
@@ -93,31 +96,35 @@ async function tables() {
 
 async function growth() {
   // The noise of the pig stays while its points come closer, and points that are noisier for their spacing ask more
-  // neighbours. The torus is alike at every size.
-  const clouds = { pig: toyPig, torus: bumpyTorus };
+  // neighbours. The steady pig and the torus are alike at every size.
+  const steadyPig = (count) => toyPig(count, NOISE * Math.sqrt(SIZES.reduce[1][0] / count));
+  const jobs = [
+    ['reduce', 'pig', toyPig], ['reduce', 'torus', bumpyTorus],
+    ['reconstruct', 'pig', toyPig], ['reconstruct', 'steady pig', steadyPig],
+  ];
   const rows = [];
   try {
-    for (const [name, make] of Object.entries(clouds)) {
-      const smallest = await make(SIZES[0][0]);
+    for (const [call, name, make] of jobs) {
+      const smallest = await make(SIZES[call][0][0]);
       let unit;
-      for (const [points, runs] of SIZES) {
+      for (const [points, runs] of SIZES[call]) {
         const positions = await make(points);
         const engine = await createEngine({ threads: 1 }); // its own: wasm memory never shrinks
-        const reduce = (positions) => engine.reduce({ positions }, { target: { ratio: 1 / 3 } });
-        const { result, ms } = await repeat(() => reduce(positions), { runs, first: () => reduce(smallest) });
+        const run = (positions) => engine[call]({ positions });
+        const { result, ms } = await repeat(() => run(positions), { runs, first: () => run(smallest) });
         await engine.dispose();
         const perPoint = (ms * 1000) / points;
         const perLog = perPoint / Math.log2(points);
         unit ??= perLog;
         rows.push([
-          name, points, runs, ms.toFixed(0), perPoint.toFixed(2), perLog.toFixed(3), (perLog / unit).toFixed(2),
+          call, name, points, runs, ms.toFixed(0), perPoint.toFixed(2), perLog.toFixed(3), (perLog / unit).toFixed(2),
           (result.report.peakMemoryBytes / points).toFixed(0),
         ]);
       }
     }
   } finally {
-    print('Growth of the reduction to 1/3 (single build, one thread; 1 or less beside the first: within n log n)', [
-      ['cloud', 'points', 'runs', 'ms', 'µs a point', 'µs / (point log2 n)', 'beside the first', 'bytes a point'],
+    print('Growth, defaults (single build, one thread; 1 or less beside the first: within n log n)', [
+      ['call', 'cloud', 'points', 'runs', 'ms', 'µs a point', 'µs / (point log2 n)', 'beside the first', 'bytes a point'],
       ...rows,
     ]);
   }
@@ -249,9 +256,9 @@ async function repeat(job, { runs = RUNS, first = job } = {}) {
 }
 
 /** Positions of a scan of the pig, made by an engine that is gone afterwards. */
-async function toyPig(count) {
+async function toyPig(count, noise = NOISE) {
   const engine = await createEngine({ threads: 1 });
-  const { positions } = await engine.sample('pig', { count, seed: 0 });
+  const { positions } = await engine.sample('pig', { count, seed: 0, noise });
   await engine.dispose();
   return positions;
 }

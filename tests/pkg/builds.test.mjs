@@ -67,6 +67,10 @@ test('samples are the same in both builds, and have the points that were asked f
     assert.notDeepEqual((await single.sample(model, { count: 5000, seed: 10 })).positions, scan.positions);
   }
   assert.equal((await single.sample('duck')).positions.length, 3 * 35_647);
+  const noises = [undefined, 5e-4, 0];
+  const [usual, same, none] = await Promise.all(noises.map((noise) => single.sample('duck', { count: 5000, noise })));
+  assert.deepEqual(usual, same);
+  assert.notDeepEqual(usual.positions, none.positions);
 });
 
 /** @param {ArrayBufferView} array */

@@ -67,6 +67,7 @@ test('every wrong value is named, with what was expected', async () => {
   await badOption(sample('duck', { model: 'pig' }));
   await badOption(sample('duck', { count: 0 }));
   await badOption(sample('duck', { count: 1e7 + 1 }));
+  await badOption(sample('duck', { noise: 0.02 }));
   for (const options of [{ threads: 0 }, { threads: 'many' }, { worker: 1 }, { wasmUrl: 5 }, { wasmUrl: { double: 'x' } }, { workers: true }]) {
     await badOption(createEngine(options));
   }
