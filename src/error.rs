@@ -10,7 +10,7 @@ pub enum Error {
     #[error("the cloud is empty: at least one point is needed")]
     EmptyCloud,
     /// Too few points for what was asked.
-    #[error("{found} points are too few: at least {needed} are needed")]
+    #[error("too few points: {found} found, at least {needed} needed")]
     TooFewPoints {
         /// How many are needed.
         needed: usize,

@@ -113,7 +113,7 @@ fn text_dialects_without_names_are_told_apart() {
 #[test]
 fn text_that_is_no_table_says_the_line() {
     for (text, line) in [
-        ("", 0),
+        ("", 1),
         ("# nothing\n\n", 2),
         ("0 0 0\n1 2\n", 2),
         ("0 0 0\n\n1 2 3 4\n", 3),

@@ -264,7 +264,7 @@ impl Xyz {
                 format!("{promised} rows")
             };
             let found = format!("the end of the file after {} rows", self.rows);
-            return Err(input.bad_at_line(input.place.line, &expected, found));
+            return Err(input.bad_at_line(input.place.line.max(1), &expected, found));
         }
         if table.is_none() {
             *table = Some(self.start_table());

@@ -173,7 +173,7 @@ test('what fails has exit code 1 and one line', async (t) => {
     [['inspect', 'nowhere.ply'], /nowhere\.ply: there is no such file/],
     [['inspect', '.'], /\.: it is a folder/],
     [['inspect', 'note.txt'], /note\.txt: .+/],
-    [['reconstruct', 'three.xyz', '-o', 'mesh.ply'], /three\.xyz: 3 points are too few: at least 4 are needed/],
+    [['reconstruct', 'three.xyz', '-o', 'mesh.ply'], /three\.xyz: too few points: 3 found, at least 4 needed/],
     [['reduce', 'scan.ply', '-o', 'missing/light.ply'], /scan\.ply: 'missing\/light\.ply' cannot be written: there is no such file or folder/],
     [['reduce', 'scan.ply', '--out-dir', 'scan.ply'], /'scan\.ply' cannot be made: a file has that name/],
     [['reduce', 'scan.ply', '-o', 'light.ply', '--attributes', 'nothing=majority'], /option attributes/],

@@ -13,7 +13,7 @@ use laz::record::{
     LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
 };
 use laz::{DecompressionSelection, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Bytes of a variable length record before its content.
@@ -336,7 +336,12 @@ fn guarded<T>(
     call: impl FnOnce() -> std::result::Result<T, laz::LasZipError>,
 ) -> std::result::Result<T, String> {
     match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(result) => result.map_err(|error| error.to_string()),
+        Ok(result) => result.map_err(|error| match error {
+            laz::LasZipError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                "fewer bytes than its points take".into()
+            }
+            error => error.to_string(),
+        }),
         Err(panic) => Err(panic_text(&panic)),
     }
 }
