@@ -96,15 +96,26 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
     alive = false;
     for (const worker of workers) worker.terminate();
   };
+  /** Why it died. @type {{ error: unknown } | undefined} */
+  let death;
   /** @type {(error: unknown) => void} */
-  let fail = () => {};
-  const dead = new Promise((_, reject) => (fail = reject));
-  dead.catch(() => {}); // whoever waits for it hears of it
+  let tell = () => {};
   /** @param {unknown} error */
   const die = (error) => {
     end();
-    fail(error);
+    death ??= { error };
+    tell(error);
   };
+  /**
+   * What `promise` gives, or why the host died. `Promise.race` would keep every answer as long as the host lives.
+   * @param {Promise<any>} promise
+   * @returns {Promise<any>}
+   */
+  const unlessDead = (promise) => new Promise((resolve, reject) => {
+    tell = reject;
+    promise.then(resolve, reject);
+    if (death) reject(death.error);
+  });
 
   /** Not 0: the call under way is to stop. Where memory cannot be shared, a worker that computes hears nothing. */
   const stop = typeof SharedArrayBuffer === 'function' ? new Int32Array(new SharedArrayBuffer(4)) : undefined;
@@ -124,7 +135,7 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
   }, poolLimitMs);
   main.hold(true);
   try {
-    await Promise.race([start(), dead]);
+    await unlessDead(start());
   } catch (error) {
     end();
     throw error;
@@ -153,7 +164,7 @@ export async function workerHost(startWorker, { build, threads, module, memory, 
             die(error);
           }
         });
-        const result = await Promise.race([answer, dead]);
+        const result = await unlessDead(answer);
         if (!signal?.aborted) return result;
       } catch (error) {
         if (isFatal(error)) end();

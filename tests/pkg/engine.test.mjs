@@ -4,7 +4,10 @@ import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { availableParallelism } from 'node:os';
 import test from 'node:test';
+import { setImmediate } from 'node:timers/promises';
 import { promisify } from 'node:util';
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
 import { createEngine } from 'pointweave';
 import { makeApi } from '../../pkg/api.js';
 import { workerHost } from '../../pkg/hosts.js';
@@ -176,6 +179,22 @@ test('a call that fails does not hold up the next', async (t) => {
   const good = engine.reduce(sphere(500));
   assert.equal((await bad).code, 'empty-cloud');
   assert.equal((await good).positions.length / 3, 167);
+});
+
+test('what a call gave is not kept', async (t) => {
+  setFlagsFromString('--expose-gc');
+  const collect = runInNewContext('gc');
+  for (const threads of [1, 2]) {
+    const engine = await engineFor(t, { threads });
+    const results = [];
+    for (let k = 0; k < 3; k++) results.push(new WeakRef(await engine.sample('duck', { count: 1000 })));
+    await engine.sample('duck', { count: 10 }); // the last answer may still be held
+    for (let k = 0; k < 20 && results.some((result) => result.deref()); k++) {
+      await setImmediate();
+      collect();
+    }
+    assert.deepEqual(results.map((result) => result.deref()), [undefined, undefined, undefined], `${threads} threads`);
+  }
 });
 
 test('with keep, what would come out the same is not done again', async (t) => {
