@@ -169,8 +169,8 @@ impl Lattice {
     }
 
     /// Position in the unit frame.
-    pub(crate) fn position(&self, place: Place) -> DVec3 {
-        self.origin + self.edge * self.at(place).as_dvec3()
+    pub(crate) fn position(&self, (brick, i): Place) -> DVec3 {
+        self.beyond(brick, coordinates(i))
     }
 
     /// Whether the surface crosses the cell `place` shifted by `d`: then its place.

@@ -8,7 +8,6 @@
 use crate::lists::{key, sort_by_key};
 use crate::par;
 use glam::Vec3;
-
 use std::ops::Range;
 
 /// Points of a leaf: small enough that a scan is cheaper than another level.

@@ -23,7 +23,7 @@ Usage: cargo xtask <command> [options]
   build                 all wasm builds, into pkg/wasm/
   serve [--port N]      the builds and the page, served on localhost (default port 8080)
   test [--only LIST]    every check, or those of a comma-separated list:
-                        fmt,clippy,native,wasm,types,pkg,page
+                        fmt,clippy,native,wasm,types,pkg,element,page
   bench [ARGS…]         the benchmarks, after a build; ARGS go to tests/bench/bench.mjs
   setup                 install whatever the other commands need, and nothing else
 
