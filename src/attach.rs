@@ -1,11 +1,10 @@
 //! Colours and scalars of a cloud on the vertices of a mesh.
 
 use crate::cloud::{Attribute, Cloud};
-use crate::lists::key;
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::{COLORS, Carry};
-use crate::placement::{color_key, majority};
+use crate::placement::{color_key, label_key, majority};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -58,7 +57,7 @@ pub fn attach(
             let votes = || shares.iter().map(|&(i, w)| (a.values[i], w));
             match how(&a.name) {
                 Carry::Mean => mean(shares, &|i| a.values[i]),
-                Carry::Majority => majority(votes(), key).unwrap_or_else(nearest),
+                Carry::Majority => majority(votes(), label_key).unwrap_or_else(nearest),
                 Carry::Nearest => nearest(),
             }
         };

@@ -34,6 +34,15 @@ struct Task {
     walks: u8,
 }
 
+/// A brick with vertices that are to be evaluated.
+struct Asked {
+    brick: u32,
+    /// How many.
+    vertices: usize,
+    /// It is away from what is fitted: see [`Smooth`].
+    far: bool,
+}
+
 struct Band<'a, F: Implicit> {
     field: &'a F,
     lattice: Lattice,
@@ -131,7 +140,7 @@ impl<F: Implicit> Band<'_, F> {
     ) -> Result<()> {
         let mut wanted = std::mem::take(&mut self.wanted);
         wanted.resize(self.lattice.bricks.len(), Bits::default());
-        let mut bricks: Vec<(u32, usize)> = Vec::new();
+        let mut bricks: Vec<Asked> = Vec::new();
         for task in tasks {
             for c in 0..8 {
                 let (b, i) = self.lattice.shifted_or_new(task.cell, corner(c));
@@ -139,22 +148,27 @@ impl<F: Implicit> Band<'_, F> {
                 let brick = &self.lattice.bricks[b as usize];
                 let is_open = !brick.known.has(i) || self.closing && brick.value[i].is_nan();
                 if is_open && wanted[b as usize].insert(i) && wanted[b as usize].len() == 1 {
-                    bricks.push((b, 0));
+                    bricks.push(Asked {
+                        brick: b,
+                        vertices: 0,
+                        far: self.closing && self.lattice.is_far(b),
+                    });
                 }
             }
         }
-        for (b, n) in &mut bricks {
-            let wanted = &mut wanted[*b as usize];
-            if self.closing && self.lattice.is_far(*b) {
-                *wanted = self.lattice.bricks[*b as usize].known.others();
+        for asked in &mut bricks {
+            let wanted = &mut wanted[asked.brick as usize];
+            if asked.far {
+                let unknown = self.lattice.bricks[asked.brick as usize].known.others();
+                unknown.iter().for_each(|i| _ = wanted.insert(i));
             }
-            *n = wanted.len();
+            asked.vertices = wanted.len();
         }
         let mut rest = &bricks[..];
         while !rest.is_empty() {
             let mut vertices = 0;
-            let fitting = rest.iter().take_while(|(_, n)| {
-                vertices += n;
+            let fitting = rest.iter().take_while(|asked| {
+                vertices += asked.vertices;
                 vertices <= SLICE
             });
             let (slice, later) = rest.split_at(fitting.count().max(1));
@@ -162,30 +176,26 @@ impl<F: Implicit> Band<'_, F> {
                 slice.len(),
                 || (self.field.scratch(), Vec::new(), Vec::new()),
                 |k, (scratch, at, values)| {
-                    self.brick_values(
-                        slice[k].0,
-                        &wanted[slice[k].0 as usize],
-                        (at, values),
-                        scratch,
-                    )
+                    let wanted = &wanted[slice[k].brick as usize];
+                    self.brick_values(&slice[k], wanted, (at, values), scratch)
                 },
             );
-            for (&(b, n), values) in slice.iter().zip(values) {
-                let brick = &mut self.lattice.bricks[b as usize];
-                for (i, (value, fitted)) in wanted[b as usize].iter().zip(values) {
+            for (asked, values) in slice.iter().zip(values) {
+                let brick = &mut self.lattice.bricks[asked.brick as usize];
+                for (i, (value, fitted)) in wanted[asked.brick as usize].iter().zip(values) {
                     brick.value[i] = value;
                     brick.known.insert(i);
                     if fitted {
                         brick.fitted.insert(i);
                     }
                 }
-                self.evaluated += n;
+                self.evaluated += asked.vertices;
             }
             report(self.evaluated)?;
             rest = later;
         }
-        for (b, _) in bricks {
-            wanted[b as usize] = Bits::default();
+        for asked in bricks {
+            wanted[asked.brick as usize] = Bits::default();
         }
         self.wanted = wanted;
         Ok(())
@@ -194,7 +204,7 @@ impl<F: Implicit> Band<'_, F> {
     /// The values at some vertices of a brick, each with whether it comes from a fitted function.
     fn brick_values(
         &self,
-        b: u32,
+        &Asked { brick: b, far, .. }: &Asked,
         wanted: &Bits,
         (at, values): (&mut Vec<DVec3>, &mut Vec<f64>),
         scratch: &mut F::Scratch,
@@ -203,13 +213,13 @@ impl<F: Implicit> Band<'_, F> {
         at.extend(wanted.iter().map(|i| self.lattice.position((b, i))));
         values.clear();
         values.resize(at.len(), f64::NAN);
-        let far = (self.closing && self.lattice.is_far(b)).then(|| {
+        let smooth = far.then(|| {
             let at = |d: IVec3| self.lattice.beyond(b, d);
             Smooth::new(|d| self.field.global(at(d), scratch))
         });
         // A known vertex is asked for again only where no fitted function reaches it.
         let known = &self.lattice.bricks[b as usize].known;
-        if far.is_none() && !wanted.iter().all(|i| known.has(i)) {
+        if !far && !wanted.iter().all(|i| known.has(i)) {
             self.field.locals(at, values, scratch);
         }
         let result = |(k, i): (usize, usize)| {
@@ -220,7 +230,7 @@ impl<F: Implicit> Band<'_, F> {
                 (f32::NAN, false)
             } else if on_hull {
                 (self.lattice.edge as f32, false)
-            } else if let Some(smooth) = &far {
+            } else if let Some(smooth) = &smooth {
                 (smooth.at(i) as f32, false)
             } else {
                 (self.field.global(at[k], scratch) as f32, false)

@@ -74,15 +74,17 @@ pub(crate) fn unpack(packed: u64) -> (u32, u32) {
     ((packed >> 32) as u32, packed as u32)
 }
 
+/// Keys in ascending order, each with the place where it was; equals stay in order.
+pub(crate) fn ranked(keys: impl Iterator<Item = u32>) -> Vec<u64> {
+    let mut ranked: Vec<u64> = keys.zip(0..).map(|(key, i)| pack(key, i)).collect();
+    ranked.sort_unstable();
+    ranked
+}
+
 /// Sorts values by whole numbers; equals stay in order.
 pub(crate) fn sort_by_key<T: Copy>(values: &mut [T], key: impl Fn(&T) -> u32) {
     let before = values.to_vec();
-    let mut order: Vec<u64> = before
-        .iter()
-        .zip(0..)
-        .map(|(v, i)| pack(key(v), i))
-        .collect();
-    order.sort_unstable();
+    let order = ranked(before.iter().map(key));
     for (value, packed) in values.iter_mut().zip(order) {
         *value = before[unpack(packed).1 as usize];
     }

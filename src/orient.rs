@@ -25,7 +25,7 @@ use crate::cells::Sites;
 use crate::error::Result;
 use crate::fit::Fits;
 use crate::kernel::dipoles;
-use crate::lists::{Lists, key, of_key, pack, unpack};
+use crate::lists::{Lists, key, of_key, pack, ranked, unpack};
 use crate::par;
 use crate::params::Propagation;
 use crate::progress::{Progress, Stage};
@@ -267,9 +267,7 @@ struct Forest {
 
 impl Forest {
     fn strongest_first(n: usize, edges: &[Edge]) -> Forest {
-        let strongest = |(e, i): (&Edge, u32)| pack(!key(e.weight.abs()), i);
-        let mut order: Vec<u64> = edges.iter().zip(0..).map(strongest).collect();
-        order.sort_unstable();
+        let order = ranked(edges.iter().map(|e| !key(e.weight.abs())));
         let mut set: Vec<u32> = (0..n as u32).collect();
         fn root(set: &mut [u32], mut i: u32) -> u32 {
             while set[i as usize] != i {

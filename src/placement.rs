@@ -14,7 +14,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::clusters::Shares;
 use crate::features::Features;
 use crate::linalg::sym_eigen;
-use crate::lists::{key, pack, unpack};
+use crate::lists::{key, ranked, unpack};
 use crate::octree::{Neighbor, Octree};
 use crate::par;
 use crate::params::{COLORS, Carry, Placement};
@@ -318,7 +318,7 @@ pub fn carry(
     let attributes = cloud.attributes.iter().map(|a| {
         let of = |i: usize| match how(&a.name) {
             Carry::Mean => mean(i, &|k| f64::from(a.values[k])) as f32,
-            Carry::Majority => majority(votes(i).map(|(k, u)| (a.values[k], u)), key)
+            Carry::Majority => majority(votes(i).map(|(k, u)| (a.values[k], u)), label_key)
                 .unwrap_or(a.values[closest(i)]),
             Carry::Nearest => a.values[closest(i)],
         };
@@ -352,9 +352,7 @@ pub(crate) fn majority<T: Copy>(
     key: fn(T) -> u32,
 ) -> Option<T> {
     let votes: Vec<(T, f32)> = votes.collect();
-    let keys = votes.iter().zip(0..);
-    let mut sorted: Vec<u64> = keys.map(|(&(value, _), i)| pack(key(value), i)).collect();
-    sorted.sort_unstable();
+    let sorted = ranked(votes.iter().map(|&(value, _)| key(value)));
     let mut most = None;
     for same in sorted.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
         let vote = |packed: &u64| votes[unpack(*packed).1 as usize];
@@ -364,6 +362,11 @@ pub(crate) fn majority<T: Copy>(
         }
     }
     most.map(|(value, _)| value)
+}
+
+/// A label's [`key`]: −0 is 0.
+pub(crate) fn label_key(label: f32) -> u32 {
+    key(label + 0.0)
 }
 
 /// A colour's [`key`].

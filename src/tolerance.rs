@@ -6,7 +6,7 @@
 
 use crate::error::Result;
 use crate::features::Features;
-use crate::lists::{key, of_key, pack, unpack};
+use crate::lists::{key, of_key, ranked, unpack};
 use crate::noise::Scales;
 use crate::progress::{Part, Progress, Stage};
 use std::ops::RangeInclusive;
@@ -86,12 +86,7 @@ pub(crate) fn search(
 /// What `share` of the surface is below, as every point stands for its area.
 fn quantile(features: &Features, distances: Vec<f32>, share: f64) -> f64 {
     let area = |i: u32| f64::from(features.spacing[i as usize]).powi(2);
-    let mut parts: Vec<u64> = distances
-        .into_iter()
-        .zip(0..)
-        .map(|(distance, i)| pack(key(distance), i))
-        .collect();
-    parts.sort_unstable();
+    let parts = ranked(distances.into_iter().map(key));
     let parts = || parts.iter().map(|&part| unpack(part));
     let total: f64 = parts().map(|(_, i)| area(i)).sum();
     let mut below = 0.0;
