@@ -4,7 +4,7 @@ import { PointweaveError } from './errors.js';
 /** @import { FileCloud, Format } from './types.js' */
 
 /**
- * The points that came with a slice; see `src/wasm_read.rs`.
+ * The points that came with a slice; see `src/js/wasm_read.rs`.
  * @typedef {object} Block
  * @property {Float32Array | Float64Array} positions
  * @property {Float32Array} [normals]

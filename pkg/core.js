@@ -8,7 +8,7 @@ import { track } from './progress.js';
 /** @import { Build, Progress } from './types.js' */
 
 /**
- * A function of `src/wasm.rs` and what it takes; a progress callback is added as the last argument.
+ * A function of `src/js/wasm.rs` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
  * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
@@ -79,7 +79,7 @@ export class Core {
 }
 
 /**
- * An error that `src/wasm.rs` made, as opposed to a trap.
+ * An error that `src/js/wasm.rs` made, as opposed to a trap.
  * @param {unknown} thrown
  * @returns {thrown is import('./errors.js').ErrorRecord}
  */

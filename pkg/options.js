@@ -1,6 +1,6 @@
 /**
  * Every option with its default and what it accepts, and the checks at the border. The ranges and
- * defaults are those of `src/params.rs`; a test compares the two.
+ * defaults are those of `src/base/params.rs`; a test compares the two.
  */
 import { PointweaveError } from './errors.js';
 

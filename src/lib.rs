@@ -29,81 +29,29 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
-// Base: knows no stage.
-pub mod error;
-pub mod params;
-#[cfg(feature = "threads")]
-pub mod pool;
-pub mod progress;
-pub mod par;
-pub mod rng;
-mod lists;
-pub mod power;
-pub mod lanes;
-pub mod linalg;
-pub mod kernel;
-
-// Stages, in the order in which data flows through them.
+// The wings, in the order in which data flows through them. Each imports only those above it.
+pub mod base;
 pub mod cloud;
-pub mod octree;
-pub mod neighborhood;
 pub mod features;
-mod noise;
-mod planes;
-mod filter;
-pub mod outliers;
-pub mod density;
-pub mod fcm;
-pub mod clusters;
-pub mod placement;
-mod surroundings;
-mod borders;
-pub mod paper;
-mod tolerance;
 pub mod reduce;
-pub mod cells;
-pub mod local;
-mod faces;
 pub mod fit;
-mod winding;
-mod caves;
 pub mod orient;
-pub mod field;
-pub mod extract;
-mod band;
-mod lattice;
-mod loops;
-mod dual;
-mod creases;
-mod trim;
-mod rims;
-mod simplify;
-mod collapse;
-pub mod attach;
+pub mod mesh;
 pub mod report;
-pub mod distance;
-pub mod height_field;
-
-// The top: what the stages start from, the stages in order.
-mod clock;
-mod input;
 pub mod pipeline;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.
-pub mod formats;
 pub mod samples;
+pub mod formats;
 
 // The border to JavaScript.
 #[cfg(target_arch = "wasm32")]
 mod js;
-#[cfg(all(target_arch = "wasm32", feature = "engine"))]
-pub mod wasm;
-#[cfg(all(target_arch = "wasm32", not(feature = "engine")))]
-pub mod wasm_read;
 
+pub use base::error::{Error, Result};
+pub use base::params::{ReduceParams, SurfaceParams};
+pub use base::progress::{Progress, Stage};
+pub use base::{error, par, params, progress};
 pub use cloud::Cloud;
-pub use error::{Error, Result};
-pub use params::{ReduceParams, SurfaceParams};
 pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect};
 pub use pipeline::{reconstruct, reconstruct_owned, reduce, reduce_owned};
-pub use progress::{Progress, Stage};

@@ -1,8 +1,8 @@
 //! What is remembered from one reconstruction to the next changes how much is done, never what comes out.
 
-use pointweave::params::{Boundary, Outliers, Target};
+use pointweave::base::params::{Boundary, Outliers, Target};
+use pointweave::base::progress::Silent;
 use pointweave::pipeline::{Memory, reconstruct_again};
-use pointweave::progress::Silent;
 use pointweave::samples::{Model, sample};
 use pointweave::{Cloud, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
 

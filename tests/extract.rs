@@ -1,11 +1,11 @@
 //! Extraction on functions whose zero set is known, and on some that have none worth the name.
 
 use glam::{DVec3, Vec3};
-use pointweave::extract::{ExtractParams, Extracted, Implicit, extract};
-use pointweave::params::Boundary;
-use pointweave::progress::Silent;
+use pointweave::base::params::Boundary;
+use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
+use pointweave::mesh::{ExtractParams, Extracted, Implicit, extract};
 use pointweave::report::{Topology, area, topology, volume};
-use pointweave::rng::Rng;
 use pointweave::{Error, Stage};
 use std::collections::HashSet;
 use std::f64::consts::PI;

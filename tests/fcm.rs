@@ -1,9 +1,9 @@
 //! Fuzzy c-means against a naive reading of the paper's equations, and against scikit-fuzzy.
 
 use glam::{DVec3, Vec3};
-use pointweave::fcm::{Fcm, FcmParams, Prototypes, Start};
-use pointweave::params::Norm;
-use pointweave::rng::Rng;
+use pointweave::base::params::Norm;
+use pointweave::base::rng::Rng;
+use pointweave::reduce::fcm::{Fcm, FcmParams, Prototypes, Start};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 

@@ -3,7 +3,7 @@
 //! Native only: a browser has no folder of shared data.
 #![cfg(not(target_arch = "wasm32"))]
 
-use pointweave::error::Error;
+use pointweave::base::error::Error;
 use pointweave::formats::{
     ColorValues, Format, Output, Positions, RawCloud, Reading, Summary, WriteOptions, detect, read,
     write,

@@ -1,8 +1,8 @@
 //! Readers and writers: dialects, round trips, and damaged input. Files that others made are in `files.rs`.
 
+use pointweave::base::rng::Rng;
 use pointweave::cloud::Attribute;
 use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, detect, read, write};
-use pointweave::rng::Rng;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 

@@ -3,8 +3,8 @@
 
 mod threads;
 
-use pointweave::params::SurfaceParams;
-use pointweave::progress::Silent;
+use pointweave::base::params::SurfaceParams;
+use pointweave::base::progress::Silent;
 use pointweave::{Cloud, par, pipeline};
 use std::collections::BTreeSet;
 use wasm_bindgen_test::wasm_bindgen_test;

@@ -8,8 +8,8 @@ mod check;
 mod made;
 
 use made::Kept;
+use pointweave::base::rng::Rng;
 use pointweave::formats::{Format, Positions, RawCloud, Reading, detect, read};
-use pointweave::rng::Rng;
 
 fn values(cloud: &RawCloud) -> Vec<f64> {
     match &cloud.positions {

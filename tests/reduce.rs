@@ -4,14 +4,16 @@ mod common;
 
 use common::{Shape, distances_to, points};
 use glam::{DVec3, Vec3};
-use pointweave::density::quotas;
+use pointweave::base::params::{
+    COLORS, Carry, Clusters, Method, Norm, Outliers, Placement, Target,
+};
+use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
+use pointweave::cloud::octree::Octree;
 use pointweave::features::Features;
-use pointweave::octree::Octree;
-use pointweave::outliers::{self, DROPPED};
-use pointweave::params::{COLORS, Carry, Clusters, Method, Norm, Outliers, Placement, Target};
-use pointweave::progress::Silent;
+use pointweave::features::outliers::{self, DROPPED};
+use pointweave::reduce::density::quotas;
 use pointweave::reduce::{Reduced, reduce};
-use pointweave::rng::Rng;
 use pointweave::samples::{Model, NOISE, sample_with_noise};
 use pointweave::{Cloud, Error, ReduceParams, Stage, SurfaceParams, pipeline};
 #[cfg(target_arch = "wasm32")]

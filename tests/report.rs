@@ -4,12 +4,12 @@ mod common;
 
 use common::distances_to;
 use glam::{DVec3, Vec3};
-use pointweave::distance::{TriangleTree, closest_on_triangle, mesh_distance};
-use pointweave::progress::Silent;
+use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
+use pointweave::report::distance::{TriangleTree, closest_on_triangle, mesh_distance};
 use pointweave::report::{
     DistanceStats, ReduceReport, StageTimes, SurfaceReport, Topology, area, topology, volume,
 };
-use pointweave::rng::Rng;
 use pointweave::{Error, Stage};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

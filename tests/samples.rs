@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3, dvec3};
 use pointweave::Cloud;
-use pointweave::octree::Octree;
-use pointweave::rng::Rng;
+use pointweave::base::rng::Rng;
+use pointweave::cloud::octree::Octree;
 use pointweave::samples::{Model, NOISE, Sample, sample, sample_with_noise};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

@@ -5,9 +5,9 @@ mod common;
 use common::mesh::Flaws;
 use common::{Shape, points};
 use glam::DVec3;
-use pointweave::params::{Boundary, Resolution};
-use pointweave::progress::Silent;
-use pointweave::rng::Rng;
+use pointweave::base::params::{Boundary, Resolution};
+use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
 use pointweave::{Cloud, Surface, SurfaceParams, reconstruct};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

@@ -4,9 +4,9 @@ mod common;
 
 use common::{Shape, points};
 use glam::{DMat3, DVec3};
-use pointweave::distance::mesh_distance;
-use pointweave::params::{Boundary, COLORS, Carry, Kernel, Propagation, Target};
-use pointweave::progress::Silent;
+use pointweave::base::params::{Boundary, COLORS, Carry, Kernel, Propagation, Target};
+use pointweave::base::progress::Silent;
+use pointweave::report::distance::mesh_distance;
 use pointweave::report::{area, topology, volume};
 use pointweave::{Cloud, Error, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
 #[cfg(target_arch = "wasm32")]
@@ -246,7 +246,7 @@ fn wrong_normals(s: &Surface, outward: impl Fn(DVec3) -> DVec3) -> usize {
 fn angle_profile(n: usize) -> Vec<f64> {
     let outline =
         [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)].map(|(x, z)| (f64::from(x), f64::from(z)));
-    let mut rng = pointweave::rng::Rng::new(31);
+    let mut rng = pointweave::base::rng::Rng::new(31);
     let (walls, ends) = (8.0 * 2.0, 2.0 * 3.0);
     let mut positions = Vec::new();
     while positions.len() < 3 * n {
@@ -346,7 +346,7 @@ fn thin_plates_have_two_sides() {
             spacings / 2.0 * ((8.0 + 16.0 * half) / n as f64).sqrt()
         });
         // A plate of half edge 1: the box, squeezed.
-        let mut rng = pointweave::rng::Rng::new(21);
+        let mut rng = pointweave::base::rng::Rng::new(21);
         let rim = 16.0 * half / (8.0 + 16.0 * half);
         let mut positions = Vec::new();
         for _ in 0..n {
@@ -556,7 +556,7 @@ fn odd_input_gives_a_manifold_mesh() {
         .collect();
     let mut doubled = Shape::Sphere.sample(2000, 0.0, 12);
     doubled.extend_from_within(..);
-    let mut rng = pointweave::rng::Rng::new(13);
+    let mut rng = pointweave::base::rng::Rng::new(13);
     let scattered: Vec<f64> = (0..6000).map(|_| rng.uniform()).collect();
     let four = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     for (name, positions) in [

@@ -4,7 +4,7 @@ use super::Format;
 use super::text::quote;
 #[cfg(feature = "files")]
 use super::{obj, off, pcd, ply, stl, xyz};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// The format of a file: by its content where that tells, else by its name.
 ///

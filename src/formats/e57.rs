@@ -7,7 +7,7 @@
 use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use ::e57::{CartesianCoordinate, E57Reader, PointCloud, RecordDataType, RecordName, Transform};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -11,7 +11,7 @@ mod scene;
 use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
-use crate::error::Result;
+use crate::base::error::Result;
 use accessor::Accessor;
 use scene::{Document, Placed};
 

@@ -2,7 +2,7 @@
 
 use super::Format;
 use super::text::quote;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// A line of text is not longer than this: a file without ends of lines is no text.
 const LONGEST_LINE: usize = 1 << 20;

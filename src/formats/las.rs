@@ -12,7 +12,7 @@ mod time;
 use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
-use crate::error::Result;
+use crate::base::error::Result;
 use ::las::point::Format;
 use ::las::raw;
 use laz::Laz;

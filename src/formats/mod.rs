@@ -39,8 +39,8 @@ mod write;
 #[cfg(feature = "files")]
 mod xyz;
 
+use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Cloud};
-use crate::error::{Error, Result};
 use crate::pipeline::Surface;
 pub use detect::detect;
 pub use reading::{Reading, Summary};

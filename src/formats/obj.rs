@@ -12,7 +12,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
 use super::text::{number, words};
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Whether the first line that is no comment is one of an OBJ file.
 pub(super) fn looks_like(head: &[u8]) -> bool {

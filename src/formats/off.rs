@@ -5,7 +5,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::{number, words};
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Whether the first line that is no comment starts as an OFF file does.
 pub(super) fn looks_like(head: &[u8]) -> bool {

@@ -13,7 +13,7 @@ use super::lzf;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
 use super::text::number;
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Whether the content starts as a PCD file does: comments, then `VERSION` or `FIELDS`.
 pub(super) fn looks_like(head: &[u8]) -> bool {

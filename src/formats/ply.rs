@@ -14,7 +14,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::Table;
 use super::text::{number, words};
-use crate::error::Result;
+use crate::base::error::Result;
 use header::{Element, Encoding, Header, HeaderLines, Property};
 
 /// Whether the content starts as a PLY file does.

@@ -5,7 +5,7 @@ use super::table::{Block, Table, Verdict};
 use super::{Format, Positions, RawCloud, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;

@@ -5,7 +5,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
 use super::text::{number, words};
-use crate::error::Result;
+use crate::base::error::Result;
 use std::collections::HashSet;
 
 /// Before the triangles of a binary file: 80 bytes of any content and their count.

@@ -17,7 +17,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
 use super::text::number;
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Rows that decide what columns without names are.
 const LOOK_AHEAD: usize = 1000;

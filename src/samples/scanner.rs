@@ -7,8 +7,8 @@
 //! dropped, as real scanners do. The range along the ray carries Gaussian noise.
 
 use super::Model;
-use crate::par;
-use crate::rng::Rng;
+use crate::base::par;
+use crate::base::rng::Rng;
 use glam::DVec3;
 
 /// One measured point.

@@ -5,11 +5,11 @@
 pub mod mesh;
 
 use glam::{DVec3, Vec3};
-use pointweave::clusters::{SHARES, Shares};
-use pointweave::height_field::{Patches, cloud_distances};
-use pointweave::octree::Octree;
-use pointweave::progress::Silent;
-use pointweave::rng::Rng;
+use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
+use pointweave::cloud::octree::Octree;
+use pointweave::reduce::clusters::{SHARES, Shares};
+use pointweave::reduce::height_field::{Patches, cloud_distances};
 use std::f64::consts::{PI, TAU};
 
 /// A closed surface of known truth.

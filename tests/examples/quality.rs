@@ -5,12 +5,12 @@
 //! by. Lengths in 1e-4 of the diagonal.
 
 use glam::{DVec3, Vec3};
-use pointweave::clusters::{SHARES, Shares};
-use pointweave::height_field::{Patches, cloud_distances};
-use pointweave::octree::Octree;
-use pointweave::params::Target;
-use pointweave::progress::Silent;
+use pointweave::base::params::Target;
+use pointweave::base::progress::Silent;
+use pointweave::cloud::octree::Octree;
 use pointweave::reduce::Reduced;
+use pointweave::reduce::clusters::{SHARES, Shares};
+use pointweave::reduce::height_field::{Patches, cloud_distances};
 use pointweave::samples::{Model, sample_with_noise};
 use pointweave::{Cloud, ReduceParams, Result, SurfaceParams, reconstruct, reduce};
 

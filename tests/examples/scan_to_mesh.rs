@@ -1,7 +1,7 @@
 //! `cargo run --release --example scan_to_mesh scan.ply mesh.ply`: a third of the points, and the mesh through them.
 
+use pointweave::base::progress::Silent;
 use pointweave::formats::{Output, RawCloud, detect, read, write};
-use pointweave::progress::Silent;
 use pointweave::{SurfaceParams, reconstruct};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -23,5 +23,5 @@ pub async fn start(threads: usize) {
     start_workers(glue, module, memory, threads)
         .await
         .expect("every worker starts");
-    pointweave::pool::build(threads).expect("one pool a test binary");
+    pointweave::base::pool::build(threads).expect("one pool a test binary");
 }

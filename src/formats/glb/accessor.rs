@@ -2,7 +2,7 @@
 
 use super::super::input::Input;
 use super::scene::{BufferView, Document};
-use crate::error::Result;
+use crate::base::error::Result;
 use std::collections::BTreeMap;
 
 /// Values of up to four components; only those that the data really has.

@@ -1,7 +1,7 @@
 //! What a glTF file describes, as far as vertices need it, and where its nodes place them.
 
 use super::super::input::Input;
-use crate::error::Result;
+use crate::base::error::Result;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

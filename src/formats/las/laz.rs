@@ -6,7 +6,7 @@
 use super::super::input::Input;
 use super::Header;
 use super::time::Times;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use laz::las::{v1, v2};
 use laz::laszip::ChunkTable;
 use laz::record::{

@@ -3,7 +3,7 @@
 use super::super::input::{Ending, Input};
 use super::super::table::{ColorRange, Columns, Precision};
 use super::super::text::quote;
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// A scalar type.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,8 +10,8 @@
 //!   of its own scales them back, so that the origin's stays exact.
 
 use super::local::Local;
+use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
-use crate::error::{Error, Result};
 use crate::formats::RawCloud;
 use glam::Vec3;
 

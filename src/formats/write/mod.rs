@@ -9,7 +9,7 @@ mod stl;
 mod xyz;
 
 use super::{Positions, RawCloud};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 /// A format that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

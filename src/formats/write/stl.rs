@@ -2,7 +2,7 @@
 //! origin, so the text says `at X Y Z` where one has to be added.
 
 use super::local::Local;
-use crate::error::Result;
+use crate::base::error::Result;
 use crate::formats::RawCloud;
 use glam::Vec3;
 

@@ -1,8 +1,8 @@
 //! Generated clouds whose surface is known: where it is, which way it looks, where it ends.
 
 use glam::{DVec3, dvec3};
-use pointweave::distance::closest_on_triangle;
-use pointweave::rng::Rng;
+use pointweave::base::rng::Rng;
+use pointweave::report::distance::closest_on_triangle;
 use pointweave::samples::{Model, sample_with_noise};
 use std::f64::consts::TAU;
 

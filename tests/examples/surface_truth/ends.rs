@@ -3,8 +3,8 @@
 use crate::clouds::{Scan, Truth};
 use crate::measure::{Spaced, mark, reduced_to, surface};
 use glam::{Vec3, dvec3};
-use pointweave::distance::TriangleTree;
-use pointweave::params::Boundary;
+use pointweave::base::params::Boundary;
+use pointweave::report::distance::TriangleTree;
 use pointweave::samples::Model;
 use pointweave::{Surface, SurfaceParams};
 use std::collections::BTreeMap;

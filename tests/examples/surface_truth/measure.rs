@@ -2,10 +2,10 @@
 
 use crate::clouds::Scan;
 use glam::{DVec3, Vec3};
-use pointweave::distance::TriangleTree;
-use pointweave::octree::{Neighbor, Octree};
-use pointweave::params::Target;
-use pointweave::progress::Silent;
+use pointweave::base::params::Target;
+use pointweave::base::progress::Silent;
+use pointweave::cloud::octree::{Neighbor, Octree};
+use pointweave::report::distance::TriangleTree;
 use pointweave::report::{DistanceStats, volume};
 use pointweave::{Cloud, ReduceParams, Result, Stage, Surface, SurfaceParams, reconstruct};
 use std::f64::consts::PI;

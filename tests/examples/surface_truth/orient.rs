@@ -2,7 +2,7 @@
 
 use crate::clouds::{Scan, Truth};
 use crate::measure::{mark, oriented_right, reduced_to, signed_volume, stage_ms, surface};
-use pointweave::params::Propagation;
+use pointweave::base::params::Propagation;
 use pointweave::samples::Model;
 use pointweave::{Stage, SurfaceParams};
 

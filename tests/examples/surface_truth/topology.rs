@@ -5,7 +5,7 @@ use crate::measure::{mark, reduced_to, surface};
 use crate::mesh::Flaws;
 use glam::DVec3;
 use pointweave::SurfaceParams;
-use pointweave::params::Boundary;
+use pointweave::base::params::Boundary;
 
 pub fn run() {
     println!(

@@ -1,0 +1,230 @@
+//! What the points say of the surface around them: spacing, unoriented normal, curvature, surface variation, noise.
+//!
+//! 1. Quadrics through some of the points measure the noise, and with it how many neighbours to ask ([`crate::features::noise`]).
+//!    Planes through the neighbours of every point give its normal, variation and spacing ([`crate::features::planes`]).
+//! 2. Normals are averaged over a support that grows with the noise, over neighbours whose normals agree (a bilateral
+//!    filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases become
+//!    sharp and stay so. How fast the averaged normals turn is the curvature.
+//! 3. Each point's distance to the surface is the mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on
+//!    every quadric, with a third of the variance that fitting one would have, and blind to the far side of a crease.
+//!    By that distance noisy points are moved.
+
+pub(crate) mod filter;
+pub(crate) mod noise;
+pub mod outliers;
+pub(crate) mod planes;
+
+use crate::base::error::Result;
+use crate::base::lanes::LANES;
+use crate::base::par;
+use crate::base::progress::{Part, Progress, Stage};
+use crate::cloud::neighborhood::CELL;
+use crate::cloud::octree::Octree;
+use crate::features::filter::{Filter, Sums};
+use crate::features::noise::{Scales, quantile};
+use crate::features::planes::{Plane, Planes};
+use glam::Vec3;
+use std::ops::Range;
+
+/// Per-point features in the octree's (Morton) order; lengths in the unit frame.
+#[derive(Debug, Clone)]
+pub struct Features {
+    /// Wanted distance of neighbours on the surface, √(area a point), from how many neighbours a disc holds.
+    pub spacing: Vec<f32>,
+    /// Unit normal of arbitrary sign, filtered; zero where there is none.
+    pub normals: Vec<Vec3>,
+    /// √(κ1² + κ2²) of the principal curvatures, from how the normals turn, 1/length; 1/support at most.
+    pub curvature: Vec<f32>,
+    /// Surface variation λ0/(λ0+λ1+λ2) of the neighbours, 0 (flat) to 1/3 (Pauly, Gross, Kobbelt, "Efficient
+    /// simplification of point-sampled surfaces", 2002).
+    pub variation: Vec<f32>,
+    /// Signed distance of the point to the surface, along its normal, 0 without noise: `point - residual * normal` is denoised.
+    pub residual: Vec<f32>,
+    /// Estimated standard deviation of the noise across the surface.
+    pub noise: f32,
+}
+
+impl Features {
+    /// Measures them. Cost: a plane and two filter sums a point.
+    pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+        // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
+        if !copied(&tree.points) {
+            return Features::measure_distinct(tree, progress);
+        }
+        let copies: Vec<Range<usize>> = copies(&tree.points);
+        let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
+        let one = Features::measure_distinct(&Octree::build(&distinct), progress)?;
+        let each = || {
+            copies
+                .iter()
+                .enumerate()
+                .flat_map(|(i, c)| c.clone().map(move |_| (i, c.len())))
+        };
+        let spread = |v: &[f32]| each().map(|(i, _)| v[i]).collect::<Vec<f32>>();
+        Ok(Features {
+            spacing: each()
+                .map(|(i, n)| one.spacing[i] / (n as f32).sqrt())
+                .collect(),
+            normals: each().map(|(i, _)| one.normals[i]).collect(),
+            curvature: spread(&one.curvature),
+            variation: spread(&one.variation),
+            residual: spread(&one.residual),
+            noise: one.noise,
+        })
+    }
+
+    fn measure_distinct(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+        let cells = tree.cut(|node| node.range().len() <= CELL);
+        let scales = Scales::measure(tree);
+        let mut part = Part::new(progress, 0.0..0.4);
+        let n = tree.points.len();
+        let planes: Vec<Plane> = par::flat_map_progress(
+            cells.len(),
+            n,
+            20.0,
+            (Stage::Features, &mut part),
+            Planes::default,
+            |i, planes| planes.cell(tree, cells[i].clone(), scales.plane),
+        )?;
+        let mut features = Features {
+            spacing: planes.iter().map(|p| p.spacing).collect(),
+            normals: planes.iter().map(|p| p.normal).collect(),
+            curvature: Vec::new(),
+            variation: planes.iter().map(|p| p.variation).collect(),
+            residual: Vec::new(),
+            noise: scales.noise,
+        };
+        drop(planes);
+        features.noise = noise::within_sheets(tree, &features.normals, &scales);
+        let (early, late) = (0.4..0.7, 0.7..1.0);
+        features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
+            sums.normals(denoise)
+        })?;
+        let offsets = features.pass(tree, &cells, (progress, late), |sums, denoise| {
+            sums.offsets(denoise)
+        })?;
+        features.residual = offsets.iter().map(|o| o.residual).collect();
+        features.curvature = offsets.iter().map(|o| o.curvature).collect();
+        Ok(features)
+    }
+
+    /// One pass of the filter over all points, as a part of the stage's progress.
+    fn pass<T: Send>(
+        &self,
+        tree: &Octree,
+        cells: &[Range<usize>],
+        (progress, range): (&mut dyn Progress, Range<f32>),
+        of: impl Fn(&Sums, f32) -> [T; LANES] + Sync + Send,
+    ) -> Result<Vec<T>> {
+        par::flat_map_progress(
+            cells.len(),
+            tree.points.len(),
+            20.0,
+            (Stage::Features, &mut Part::new(progress, range)),
+            Filter::default,
+            |i, filter| filter.cell(tree, self, cells[i].clone(), &of),
+        )
+    }
+
+    /// Point `i` of the tree, moved onto the surface.
+    pub fn denoised(&self, tree: &Octree, i: usize) -> Vec3 {
+        tree.points[i] - self.residual[i] * self.normals[i]
+    }
+
+    /// Median of the spacing.
+    pub fn median_spacing(&self) -> f32 {
+        quantile(self.spacing.clone(), 2)
+    }
+}
+
+/// Whether [`copies`] finds any.
+fn copied(points: &[Vec3]) -> bool {
+    points.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// Runs of equal points. In Morton order copies follow each other, unless another point shares their cell of 2⁻²¹.
+pub(crate) fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::with_capacity(points.len());
+    for (i, p) in points.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if points[run.start] == *p => run.end = i + 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::progress::Silent;
+    use crate::base::rng::Rng;
+    use glam::DVec3;
+
+    /// `n` points of a sphere of radius 0.25 with noise across it.
+    fn sphere(n: usize, noise: f64) -> Vec<Vec3> {
+        let mut rng = Rng::new(7);
+        (0..n)
+            .map(|_| {
+                let d = DVec3::new(rng.normal(), rng.normal(), rng.normal()).normalize();
+                (d * (0.25 + noise * rng.normal())).as_vec3()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_sphere_has_its_curvature_normals_and_noise() {
+        for noise in [0.0, 1e-3, 4e-3] {
+            let tree = Octree::build(&sphere(8000, noise));
+            let f = Features::measure(&tree, &mut Silent).unwrap();
+            let median = |v: &[f32]| {
+                let mut v = v.to_vec();
+                v.sort_unstable_by(f32::total_cmp);
+                v[v.len() / 2] as f64
+            };
+            assert!(
+                (f.noise as f64 - noise).abs() < 0.15 * noise + 2e-5,
+                "{} for {noise}",
+                f.noise
+            );
+            let tilt: Vec<f32> = tree
+                .points
+                .iter()
+                .zip(&f.normals)
+                .map(|(p, n)| 1.0 - p.normalize().dot(*n).abs())
+                .collect();
+            assert!(
+                median(&tilt) < if noise < 2e-3 { 0.002 } else { 0.02 },
+                "{}",
+                median(&tilt)
+            );
+            if noise == 0.0 {
+                // Both principal curvatures are 4: the Frobenius norm is 4 √2.
+                let curvature = median(&f.curvature);
+                assert!((curvature - 4.0 * 2f64.sqrt()).abs() < 0.3, "{curvature}");
+            }
+            // Area a point: 4π 0.0625 / 8000.
+            let spacing = (4.0 * std::f64::consts::PI * 0.0625 / 8000.0f64).sqrt();
+            assert!((median(&f.spacing) / spacing - 1.0).abs() < 0.15);
+        }
+    }
+
+    #[test]
+    fn degenerate_clouds_have_finite_features() {
+        let line: Vec<Vec3> = (0..50)
+            .map(|i| Vec3::new(i as f32 / 50.0 - 0.5, 0.0, 0.0))
+            .collect();
+        for points in [vec![Vec3::ZERO], vec![Vec3::ZERO; 40], line] {
+            let f = Features::measure(&Octree::build(&points), &mut Silent).unwrap();
+            assert!(f.normals.iter().all(|n| *n == Vec3::ZERO));
+            assert!(
+                f.curvature
+                    .iter()
+                    .chain(&f.spacing)
+                    .chain(&f.variation)
+                    .all(|x| x.is_finite())
+            );
+            assert!(f.noise.is_finite());
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What every border to JavaScript needs: panics kept, errors thrown, objects made.
+
+#[cfg(feature = "engine")]
+pub mod wasm;
+#[cfg(not(feature = "engine"))]
+pub mod wasm_read;
+
+use crate::base::error::Error;
+use js_sys::{Object, Reflect};
+use std::sync::Mutex;
+use wasm_bindgen::prelude::*;
+
+pub(crate) type JsResult = Result<JsValue, JsValue>;
+
+/// The text of the panic that ended this instance.
+static PANIC: Mutex<String> = Mutex::new(String::new());
+
+/// Keeps a panic's text for [`panic_message`], and shows it on the console.
+#[wasm_bindgen(start)]
+pub fn start() {
+    std::panic::set_hook(Box::new(|info| {
+        web_sys::console::error_1(&info.to_string().into());
+        if let Ok(mut message) = PANIC.lock() {
+            *message = info.to_string();
+        }
+    }));
+}
+
+/// What the panic said that ended this instance, or an empty string.
+#[wasm_bindgen(js_name = panicMessage)]
+pub fn panic_message() -> String {
+    PANIC
+        .lock()
+        .map(|mut message| std::mem::take(&mut *message))
+        .unwrap_or_default()
+}
+
+impl From<Error> for JsValue {
+    fn from(error: Error) -> JsValue {
+        let index = error
+            .index()
+            .map_or(JsValue::UNDEFINED, |i| (i as f64).into());
+        let fields = [
+            ("code", error.code().into()),
+            ("message", error.to_string().into()),
+            ("index", index),
+            ("expected", error.expected().into()),
+            ("found", error.found().into()),
+        ];
+        object(fields).unwrap_or_else(|failed| failed)
+    }
+}
+
+/// An object with these properties; those that are undefined are left out.
+pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
+    let object = Object::new();
+    for (name, value) in fields {
+        if !value.is_undefined() {
+            Reflect::set(&object, &name.into(), &value)?;
+        }
+    }
+    Ok(object.into())
+}
+
+pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
+    value
+        .as_ref()
+        .map_or(JsValue::UNDEFINED, |value| array(value).into())
+}

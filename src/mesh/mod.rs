@@ -1,0 +1,213 @@
+//! The zero set of an implicit function as a mesh: manifold, welded, on a narrow band around the fitted points.
+//!
+//! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
+//! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
+//! 3. `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//! 4. `simplify`: fewer triangles where the surface is flat.
+//!
+//! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
+
+pub mod attach;
+pub(crate) mod band;
+pub(crate) mod collapse;
+pub(crate) mod creases;
+pub(crate) mod dual;
+pub mod field;
+pub(crate) mod lattice;
+pub(crate) mod loops;
+pub(crate) mod rims;
+pub(crate) mod simplify;
+pub(crate) mod trim;
+
+use crate::base::error::Result;
+use crate::base::params::Boundary;
+use crate::base::progress::Progress;
+use crate::mesh::band::{grow, span};
+use crate::mesh::dual::{Dual, build};
+use crate::mesh::simplify::simplify;
+use crate::mesh::trim::{Holes, decide_holes, drop_phantoms, split_bow_ties, trim_rims};
+use glam::{DVec3, Vec3};
+
+/// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
+/// Positions are in the unit frame.
+pub trait Implicit: Sync {
+    /// Memory that one evaluating worker reuses; what is left in it must not change a result.
+    type Scratch;
+
+    /// A new [`Implicit::Scratch`].
+    fn scratch(&self) -> Self::Scratch;
+
+    /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
+    fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
+
+    /// The fitted values at positions close to each other, one a position; NaN where no fitted function reaches.
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch);
+
+    /// The fitted values with their gradients, one a position; `None` where no fitted function reaches.
+    fn gradients(
+        &self,
+        at: &[DVec3],
+        found: &mut [Option<(f64, DVec3)>],
+        scratch: &mut Self::Scratch,
+    );
+}
+
+/// Options of [`extract`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtractParams {
+    /// Edge length of the lattice's cells, unit frame, 1e-4 to 0.25.
+    pub resolution: f64,
+    /// What happens where no fitted function reaches.
+    pub boundary: Boundary,
+    /// Put vertices on creases and corners of the zero set.
+    pub sharp: bool,
+    /// Edges are collapsed where the surface is flat until no more triangles are left than this, as far as the mesh
+    /// stays manifold and well shaped; `None`: all that the lattice makes.
+    pub most: Option<usize>,
+}
+
+/// A triangle mesh in the unit frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Positions; every one is used by a triangle.
+    pub vertices: Vec<Vec3>,
+    /// Unit normals that point outward, one a vertex.
+    pub normals: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What [`extract`] makes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Extracted {
+    /// The surface.
+    pub mesh: Mesh,
+    /// Share of the mesh's area (0-1) where no fitted function reached and the global extension closed it.
+    pub filled: f64,
+    /// Components whose holes were closed.
+    pub closed: usize,
+    /// Components that were left open.
+    pub open: usize,
+}
+
+/// [`Boundary::Auto`] keeps what closes a component as long as it is at most this share of the closed component's area.
+/// A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile 0.5 or more.
+pub const MOST_FILLED: f64 = 0.35;
+
+/// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
+///
+/// The mesh has no edge with more than two triangles, no vertex with more than one fan, no duplicate, degenerate or
+/// flipped triangle, and consistent orientation, whatever the field returns (see `dual`). Its bytes depend on the
+/// field's values only, not on threads or on the order of the points.
+///
+/// Where no fitted function reaches,
+/// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
+///   in a cell with an unreached corner;
+/// - `Closed`: unreached corners take [`Implicit::global`]; the mesh has no boundary edge, the lattice's hull being
+///   outside;
+/// - `Auto`: like `Closed`, then each connected component gives up what was closed by global values, and stays open, if
+///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
+///   surface; components not closed by then stay open.
+///
+/// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 16 points, nor a
+/// small piece that runs along a larger component within two spacings.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`] if `progress` asks for it.
+pub fn extract<F: Implicit>(
+    field: &F,
+    points: &[Vec3],
+    reach: &[f32],
+    params: &ExtractParams,
+    progress: &mut dyn Progress,
+) -> Result<Extracted> {
+    if points.is_empty() {
+        return Ok(Extracted::default());
+    }
+    let lattice = grow(
+        field,
+        (points, reach),
+        params.resolution,
+        params.boundary,
+        &mut span(progress, 0.0, 0.4),
+    )?;
+    let mut dual = build(field, lattice, params.sharp, &mut span(progress, 0.4, 0.75))?;
+    let Holes {
+        filled,
+        closed,
+        open,
+    } = decide_holes(&mut dual, params.boundary);
+    trim_rims(&mut dual, points, reach);
+    split_bow_ties(&mut dual);
+    drop_phantoms(&mut dual, points, reach);
+    let Triangulated {
+        mut mesh,
+        on_crease,
+        at_end,
+    } = triangulate(dual);
+    rims::smooth(&mut mesh, &at_end);
+    let mut span = span(progress, 0.75, 1.0);
+    if let Some(most) = params.most {
+        simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
+    }
+    span(1.0)?;
+    Ok(Extracted {
+        mesh,
+        filled,
+        closed,
+        open,
+    })
+}
+
+/// A mesh, and which of its vertices are on creases, and at an end of the surface.
+struct Triangulated {
+    mesh: Mesh,
+    on_crease: Vec<bool>,
+    at_end: Vec<bool>,
+}
+
+/// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
+fn triangulate(dual: Dual) -> Triangulated {
+    let mut index = vec![u32::MAX; dual.vertices.len()];
+    let used = dual.vertices.iter().filter(|v| v.quads > 0).count();
+    let mut mesh = Mesh {
+        vertices: Vec::with_capacity(used),
+        normals: Vec::with_capacity(used),
+        triangles: Vec::with_capacity(2 * dual.quads.len()),
+    };
+    let (mut on_crease, mut at_end) = (Vec::with_capacity(used), Vec::with_capacity(used));
+    let vertices = dual.vertices.iter().zip(&mut index);
+    for (vertex, index) in vertices.filter(|(vertex, _)| vertex.quads > 0) {
+        *index = mesh.vertices.len() as u32;
+        mesh.vertices.push(vertex.position);
+        mesh.normals.push(vertex.normal);
+        on_crease.push(vertex.sharp);
+        at_end.push(vertex.is_at_end());
+    }
+    for quad in &dual.quads {
+        let [p, q, r, s] = quad.vertices.map(|v| index[v as usize]);
+        mesh.triangles.extend([[p, q, r], [p, r, s]]);
+    }
+    if mesh.normals.contains(&Vec3::ZERO) {
+        fill_normals(&mut mesh);
+    }
+    Triangulated {
+        mesh,
+        on_crease,
+        at_end,
+    }
+}
+
+/// Gives the vertices without a normal the mean of their triangles'.
+fn fill_normals(mesh: &mut Mesh) {
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&v| sums[v as usize] += normal);
+    }
+    let missing = mesh.normals.iter_mut().zip(sums);
+    for (normal, sum) in missing.filter(|(n, _)| **n == Vec3::ZERO) {
+        *normal = sum.normalize_or(DVec3::Z).as_vec3();
+    }
+}

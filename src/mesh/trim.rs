@@ -1,0 +1,298 @@
+//! What is kept of the dual mesh: holes closed or not, no sheets that no point supports, one fan around each vertex.
+//!
+//! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
+
+use crate::base::lists::{Lists, key, of_key, pack, unpack};
+use crate::base::par;
+use crate::base::params::Boundary;
+use crate::cloud::octree::Octree;
+use crate::mesh::MOST_FILLED;
+use crate::mesh::dual::{Dual, Quad, Vertex};
+use crate::orient::SMALLEST;
+use crate::report::Sets;
+use glam::Vec3;
+
+/// An open surface ends within this share of a point's reach of it. Reaches are some 2.2 spacings, so that is 1.3, and what
+/// the rim is smoothed by stays within 1.5.
+const RIM: f32 = 0.6;
+/// Points at the end of a surface have half as many neighbours as others and seem to be farther apart: the reach that
+/// counts is the median of so many.
+const AROUND: usize = 24;
+/// A component that is the nearest one to fewer points than this is a phantom: stragglers off a noisy surface make such,
+/// up to about 10 of them together were seen at a noise of 0.5 % of the diagonal.
+const LEAST_POINTS: u32 = SMALLEST as u32;
+/// A second layer has less than this share of the largest component's points.
+const LAYER_POINTS: f64 = 0.1;
+/// Half of its vertices are within this share of a point's reach, some two spacings, of another component. Of the merged range
+/// images of a bunny all pieces are within 0.7, next pieces of other scans are beyond 1.
+const LAYER: f32 = 0.9;
+/// Points that one index of a parallel map takes.
+const POINTS_PER_TASK: usize = 1024;
+
+/// A component with what a decision about it rests on.
+#[derive(Clone, Default)]
+struct Component {
+    area: f64,
+    filled: f64,
+    has_boundary: bool,
+}
+
+/// What [`decide_holes`] left.
+#[derive(Debug, Default)]
+pub(crate) struct Holes {
+    /// Share of the area that is filled (0-1).
+    pub(crate) filled: f64,
+    /// Components whose holes were closed.
+    pub(crate) closed: usize,
+    /// Components that are open.
+    pub(crate) open: usize,
+}
+
+/// Drops the filled quads of the components that are better left open, and components that are nothing but filling.
+pub(crate) fn decide_holes(dual: &mut Dual, boundary: Boundary) -> Holes {
+    let (of, components) = measure(dual);
+    let (mut holes, mut area, mut filled) = (Holes::default(), 0.0, 0.0);
+    let stays_closed: Vec<bool> = components
+        .iter()
+        .map(|c| {
+            let is_unclosed = c.has_boundary || c.filled > MOST_FILLED * c.area;
+            let stays_closed = c.filled < c.area && !(boundary == Boundary::Auto && is_unclosed);
+            if c.filled < c.area {
+                let kept = if stays_closed { c.filled } else { 0.0 };
+                filled += kept;
+                area += c.area - c.filled + kept;
+                let is_open = c.has_boundary || kept < c.filled;
+                holes.open += usize::from(is_open);
+                holes.closed += usize::from(kept > 0.0 && !is_open);
+            }
+            stays_closed
+        })
+        .collect();
+    dual.retain(|quad| !quad.filled || stays_closed[of[quad.vertices[0] as usize] as usize]);
+    holes.filled = if area > 0.0 { filled / area } else { 0.0 };
+    holes
+}
+
+/// The component of every vertex, and what is to be known of each.
+fn measure(dual: &Dual) -> (Vec<u32>, Vec<Component>) {
+    let (of, count) = components(dual);
+    let mut components = vec![Component::default(); count];
+    for quad in &dual.quads {
+        let component = &mut components[of[quad.vertices[0] as usize] as usize];
+        let area = quad_area(quad, &dual.vertices);
+        component.area += area;
+        component.filled += if quad.filled { area } else { 0.0 };
+    }
+    for (vertex, &c) in dual.vertices.iter().zip(&of) {
+        components[c as usize].has_boundary |= vertex.is_at_end();
+    }
+    (of, components)
+}
+
+/// The number of every vertex's connected component, and how many there are; a vertex without quads is one of its own.
+fn components(dual: &Dual) -> (Vec<u32>, usize) {
+    let mut sets = Sets::new(dual.vertices.len());
+    for quad in &dual.quads {
+        quad.vertices[1..]
+            .iter()
+            .for_each(|&v| sets.join(quad.vertices[0], v));
+    }
+    sets.numbered()
+}
+
+fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
+    let [p, q, r, s] = quad
+        .vertices
+        .map(|v| vertices[v as usize].position.as_dvec3());
+    ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
+}
+
+/// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps
+/// of the sampling inside of the surface stay closed.
+pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+    let vertices = dual.vertices.iter().enumerate();
+    let mut ends: Vec<u32> = vertices
+        .filter(|(_, vertex)| vertex.quads > 0 && vertex.is_at_end())
+        .map(|(v, _)| v as u32)
+        .collect();
+    if ends.is_empty() {
+        return;
+    }
+    let mut left: Vec<u8> = dual.vertices.iter().map(|vertex| vertex.quads).collect();
+    let tree = Octree::build(points);
+    let mut found = Vec::new();
+    let mut is_far = |quad: &Quad| {
+        let beyond = |v: u32| {
+            let p = dual.vertices[v as usize].position;
+            (tree.nearest(p), p)
+        };
+        let farthest = quad
+            .vertices
+            .map(beyond)
+            .into_iter()
+            .max_by(|a, b| a.0.distance2.total_cmp(&b.0.distance2));
+        let Some((nearest, p)) = farthest else {
+            return false;
+        };
+        tree.knn(p, AROUND, &mut found);
+        let mut reaches: Vec<f32> = found
+            .iter()
+            .map(|n| reach[tree.order[n.index as usize] as usize])
+            .collect();
+        reaches.sort_unstable_by(f32::total_cmp);
+        let rim = RIM * reaches[reaches.len() / 2];
+        nearest.distance2 > rim * rim
+    };
+    let around = Lists::new(dual.vertices.len(), || {
+        let quads = dual.quads.iter().zip(0u32..);
+        quads.flat_map(|(quad, q)| quad.vertices.map(|v| (v, q)))
+    });
+    let mut dropped = vec![false; dual.quads.len()];
+    while let Some(end) = ends.pop() {
+        for &q in around.of(end) {
+            if !dropped[q as usize] && is_far(&dual.quads[q as usize]) {
+                dropped[q as usize] = true;
+                for v in dual.quads[q as usize].vertices {
+                    if left[v as usize] == dual.vertices[v as usize].degree {
+                        ends.push(v);
+                    }
+                    left[v as usize] -= 1;
+                }
+            }
+        }
+    }
+    let mut dropped = dropped.into_iter();
+    dual.retain(|_| dropped.next() == Some(false));
+}
+
+/// Drops components that are no part of the surface: those that are the nearest one to fewer than [`LEAST_POINTS`] points
+/// (the one with the most points stays), and second layers: pieces with an end that stand for less than [`LAYER_POINTS`] of
+/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such.
+pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+    let (of, count) = components(dual);
+    let used = || {
+        let vertices = dual.vertices.iter().zip(&of);
+        vertices.filter(|(vertex, _)| vertex.quads > 0)
+    };
+    let Some((_, first)) = used().next() else {
+        return;
+    };
+    if used().all(|(_, component)| component == first) {
+        return;
+    }
+    let (positions, component_of): (Vec<Vec3>, Vec<u32>) = used()
+        .map(|(vertex, &component)| (vertex.position, component))
+        .unzip();
+    let votes = votes(&positions, &component_of, points, count);
+    let most = votes.iter().copied().max().unwrap_or(0);
+    let least = LEAST_POINTS.min(most);
+    let mut has_end = vec![false; count];
+    for (vertex, &component) in used() {
+        has_end[component as usize] |= vertex.is_at_end();
+    }
+    let mut dropped: Vec<bool> = votes.iter().map(|&points| points < least).collect();
+    let (mut pieces, mut others) = (Vec::new(), Vec::new());
+    for (&p, &component) in positions.iter().zip(&component_of) {
+        let points = f64::from(votes[component as usize]);
+        if has_end[component as usize] && points < LAYER_POINTS * f64::from(most) {
+            pieces.push((component, p));
+        } else if !dropped[component as usize] {
+            others.push(p);
+        }
+    }
+    if !pieces.is_empty() {
+        let (others, tree) = (Octree::build(&others), Octree::build(points));
+        let away = |(component, p): (u32, Vec3)| {
+            let reach = reach[tree.order[tree.nearest(p).index as usize] as usize];
+            pack(component, key(others.nearest(p).distance2.sqrt() / reach))
+        };
+        let mut away: Vec<u64> = pieces.into_iter().map(away).collect();
+        away.sort_unstable();
+        for piece in away.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+            let (component, median) = unpack(piece[piece.len() / 2]);
+            dropped[component as usize] |= of_key(median) < LAYER;
+        }
+    }
+    dual.retain(|quad| !dropped[of[quad.vertices[0] as usize] as usize]);
+}
+
+/// How many points each of `count` components is the nearest one to.
+fn votes(positions: &[Vec3], component_of: &[u32], points: &[Vec3], count: usize) -> Vec<u32> {
+    let tree = Octree::build(positions);
+    let tasks: Vec<&[Vec3]> = points.chunks(POINTS_PER_TASK).collect();
+    let nearest = par::map(
+        tasks.len(),
+        || (),
+        |k, ()| {
+            let nearest =
+                |&p: &Vec3| component_of[tree.order[tree.nearest(p).index as usize] as usize];
+            tasks[k].iter().map(nearest).collect::<Vec<u32>>()
+        },
+    );
+    let mut votes = vec![0u32; count];
+    for component in nearest.into_iter().flatten() {
+        votes[component as usize] += 1;
+    }
+    votes
+}
+
+/// Gives every fan of quads around a vertex a vertex of its own. With all its quads a vertex has one closed fan; where
+/// an open surface left some out there may be several.
+pub(crate) fn split_bow_ties(dual: &mut Dual) {
+    // Vertices at the surface's end with their quads.
+    let mut around = Vec::new();
+    for (quad, q) in dual.quads.iter().zip(0u32..) {
+        let ends = quad.vertices.into_iter();
+        let ends = ends.filter(|&v| dual.vertices[v as usize].is_at_end());
+        around.extend(ends.map(|v| pack(v, q)));
+    }
+    around.sort_unstable();
+    for fans in around.chunk_by(|a, b| unpack(*a).0 == unpack(*b).0) {
+        let v = unpack(fans[0]).0;
+        let quads = fans.iter().map(|&fan| unpack(fan).1);
+        let sectors: Vec<Sector> = quads
+            .map(|q| Sector::of(v, q, &dual.quads[q as usize]))
+            .collect();
+        let starts = sectors
+            .iter()
+            .filter(|a| sectors.iter().all(|b| b.previous != a.next));
+        for start in starts.skip(1) {
+            let copy = dual.vertices.len() as u32;
+            let mut vertex = Vertex {
+                quads: 0,
+                ..dual.vertices[v as usize]
+            };
+            let mut member = Some(start);
+            while let Some(sector) = member {
+                dual.quads[sector.quad].vertices[sector.place] = copy;
+                vertex.quads += 1;
+                member = sectors.iter().find(|a| a.next == sector.previous);
+            }
+            dual.vertices[v as usize].quads -= vertex.quads;
+            dual.vertices.push(vertex);
+        }
+    }
+}
+
+/// A quad seen from one of its vertices.
+struct Sector {
+    quad: usize,
+    /// Of the vertex in the quad.
+    place: usize,
+    /// The corners after and before it.
+    next: u32,
+    previous: u32,
+}
+
+impl Sector {
+    fn of(v: u32, q: u32, quad: &Quad) -> Sector {
+        let corners = quad.vertices;
+        let place = corners.iter().position(|&w| w == v).unwrap_or(0);
+        Sector {
+            quad: q as usize,
+            place,
+            next: corners[(place + 1) % 4],
+            previous: corners[(place + 3) % 4],
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! What the pipeline starts from: the caller's points, or those that are not isolated, with all that is measured of them.
+
+use crate::base::error::Result;
+use crate::base::params::Outliers;
+use crate::base::progress::{Part, Progress, Stage};
+use crate::cloud::Cloud;
+use crate::cloud::octree::Octree;
+use crate::features::Features;
+use crate::features::outliers;
+use crate::reduce::Reduced;
+use glam::Vec3;
+use std::borrow::Cow;
+
+/// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
+/// as a scanner knows more than neighbours tell.
+pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
+    progress.update(Stage::Octree, 0.0)?;
+    let tree = Octree::build(&cloud.points);
+    progress.update(Stage::Octree, 1.0)?;
+    let mut features = Features::measure(&tree, progress)?;
+    if let Some(normals) = &cloud.normals {
+        for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
+            let own = normals[i as usize];
+            *normal = if own == Vec3::ZERO { *normal } else { own };
+        }
+    }
+    Ok((tree, features))
+}
+
+/// What a reduction is made of: the caller's points, or those that are not isolated.
+#[derive(Debug)]
+pub(crate) struct Input<'a> {
+    /// Without points where nobody else owns them: the tree has them.
+    pub(crate) cloud: Cow<'a, Cloud>,
+    pub(crate) tree: Octree,
+    pub(crate) features: Features,
+    pub(crate) origin: Origin,
+}
+
+/// Where the points of an [`Input`] come from.
+#[derive(Debug, Clone)]
+pub(crate) struct Origin {
+    /// Points that the caller gave.
+    pub(crate) given: usize,
+    /// The caller's index of each point, where some were dropped.
+    pub(crate) kept: Option<Vec<u32>>,
+    /// Why nothing was dropped although much is isolated; else empty.
+    pub(crate) reason: String,
+}
+
+impl<'a> Input<'a> {
+    pub(crate) fn new(
+        cloud: Cow<'a, Cloud>,
+        outliers: Outliers,
+        progress: &mut dyn Progress,
+    ) -> Result<Input<'a>> {
+        let origin = |kept, reason| Origin {
+            given: cloud.len(),
+            kept,
+            reason,
+        };
+        if outliers == Outliers::Keep {
+            let origin = origin(None, String::new());
+            let measured = measure(&cloud, progress)?;
+            return Ok(Input::of(cloud, measured, origin));
+        }
+        // Two measurements with the search between them.
+        let (tree, features) = measure(&cloud, &mut Part::new(progress, 0.0..0.4))?;
+        let isolated =
+            outliers::isolated(&tree, features.noise, &mut Part::new(progress, 0.4..0.6))?;
+        let dropped = isolated.iter().filter(|&&is| is).count();
+        if dropped == 0 || 2 * dropped > cloud.len() {
+            let reason = match dropped {
+                0 => String::new(),
+                _ => format!("{dropped} points, more than half, are isolated: none was dropped"),
+            };
+            let origin = origin(None, reason);
+            return Ok(Input::of(cloud, (tree, features), origin));
+        }
+        let mut kept: Vec<u32> = tree
+            .order
+            .iter()
+            .zip(isolated)
+            .filter(|&(_, is)| !is)
+            .map(|(&i, _)| i)
+            .collect();
+        kept.sort_unstable();
+        let rest = cloud.select(&kept)?;
+        let origin = origin(Some(kept), String::new());
+        drop((cloud, tree, features));
+        let measured = measure(&rest, &mut Part::new(progress, 0.6..1.0))?;
+        Ok(Input::of(Cow::Owned(rest), measured, origin))
+    }
+
+    fn of(
+        mut cloud: Cow<'a, Cloud>,
+        (tree, features): (Octree, Features),
+        origin: Origin,
+    ) -> Input<'a> {
+        if let Cow::Owned(cloud) = &mut cloud {
+            cloud.points = Vec::new();
+        }
+        Input {
+            cloud,
+            tree,
+            features,
+            origin,
+        }
+    }
+}
+
+impl Input<'_> {
+    /// Whether this was measured of these very points, colours and whatever else there is.
+    pub(crate) fn is_of(&self, cloud: &Cloud) -> bool {
+        let Cloud {
+            points,
+            frame,
+            colors,
+            normals,
+            attributes,
+            origin,
+        } = cloud;
+        let (of, tree) = (&self.cloud, &self.tree);
+        let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
+        self.origin.kept.is_none()
+            && tree.points.len() == points.len()
+            && (of.frame, of.origin) == (*frame, *origin)
+            && tree.points.iter().zip(&tree.order).all(place)
+            && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+    }
+}
+
+impl Origin {
+    /// How many points were dropped.
+    pub(crate) fn dropped(&self) -> usize {
+        self.kept.as_ref().map_or(0, |kept| self.given - kept.len())
+    }
+
+    /// The caller's index of a point of this cloud.
+    pub(crate) fn callers(&self, point: u32) -> u32 {
+        self.kept
+            .as_ref()
+            .map_or(point, |kept| kept[point as usize])
+    }
+
+    /// Indices of this cloud's points become the caller's.
+    pub(crate) fn restore(&self, reduced: &mut Reduced) {
+        let Some(kept) = &self.kept else { return };
+        for i in &mut reduced.nearest {
+            *i = kept[*i as usize];
+        }
+        if let Some(assignment) = &mut reduced.assignment {
+            let mut all = vec![outliers::DROPPED; self.given];
+            for (&i, &reduced) in kept.iter().zip(assignment.iter()) {
+                all[i as usize] = reduced;
+            }
+            *assignment = all;
+        }
+    }
+}

@@ -1,0 +1,446 @@
+//! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
+
+pub(crate) mod borders;
+pub mod clusters;
+pub mod density;
+pub mod fcm;
+pub mod height_field;
+pub mod paper;
+pub mod placement;
+pub(crate) mod surroundings;
+pub(crate) mod tolerance;
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::base::error::Result;
+use crate::base::par;
+use crate::base::params::{Method, Placement, ReduceParams, Target};
+use crate::base::power::Fuzzifier;
+use crate::base::progress::{Part, Progress, Stage};
+use crate::cloud::Cloud;
+use crate::cloud::octree::Octree;
+use crate::features::Features;
+use crate::reduce::clusters::{SHARES, Samples, Settling, Shares};
+use crate::reduce::density::{CurvatureSpacing, Density};
+use crate::reduce::height_field::{Patches, cloud_distances};
+use crate::reduce::placement::{Members, Placed};
+use crate::reduce::surroundings::Around;
+
+/// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// Positions, unit normals (signs of the input's normals where it had them, else arbitrary), colours and scalars, in
+    /// the input's unit frame.
+    pub cloud: Cloud,
+    /// √(area that a point stands for), in the unit frame.
+    pub spacing: Vec<f32>,
+    /// Surface variation λ0/(λ0+λ1+λ2) of the input around the point.
+    pub variation: Vec<f32>,
+    /// Input points for which this is the nearest centre; adds up to the input's count, without those that were dropped.
+    pub weights: Vec<f32>,
+    /// Index of the nearest input point.
+    pub nearest: Vec<u32>,
+    /// Where it was asked for: the reduced point that each input point belongs to most, in the input's order;
+    /// [`crate::features::outliers::DROPPED`] for one that was dropped.
+    pub assignment: Option<Vec<u32>>,
+    /// Where they were asked for: the sub-domains, as the corners of the box of each one's points.
+    pub cells: Option<Vec<[Vec3; 2]>>,
+    /// The shares of the input points, in the octree's order, in the reduced points.
+    pub shares: Vec<Shares>,
+    /// What the clustering did.
+    pub stats: ReduceStats,
+    /// Why the count is not what was asked for, where it is not; else empty.
+    pub reason: String,
+}
+
+/// Figures of one reduction.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReduceStats {
+    /// Sub-domains.
+    pub cells: usize,
+    /// Sweeps of steps (b) and (c); the most that any sub-domain took.
+    pub iterations: usize,
+    /// J of eq. 1, Σ u^m |x - v|² over the nearest centres, in squared diagonals.
+    pub objective: f64,
+    /// Validity index χ of eq. 7; 0 with fewer than two centres or with coincident ones.
+    pub validity: f64,
+    /// Coefficient of variation of (distance of a reduced point to its nearest / wanted spacing); 0 is perfectly even.
+    pub evenness: f64,
+    /// Input points that were kept as they are (the paper's "typical data with sharp feature").
+    pub kept: usize,
+}
+
+/// Cluster centres and how the points are shared among them, in the octree's order: what both methods hand on.
+#[derive(Debug, Clone)]
+pub struct Clustering {
+    /// Centres, in the unit frame.
+    pub centers: Vec<Vec3>,
+    /// Memberships of every point in its nearest centres.
+    pub shares: Vec<Shares>,
+    /// Wanted spacing at every point.
+    pub spacing: Vec<f32>,
+    /// Sub-domains, as ranges of the octree's points.
+    pub cells: Vec<Range<usize>>,
+    /// Sweeps.
+    pub iterations: usize,
+    /// Points kept as they are.
+    pub kept: usize,
+}
+
+/// Reduces a cloud of at least one point, whose positions are taken from its `tree`. Features are freed as soon as nothing
+/// asks for them any more.
+///
+/// # Errors
+/// [`crate::Error::BadOption`], [`crate::Error::Cancelled`].
+pub fn reduce(
+    cloud: &Cloud,
+    tree: &Octree,
+    features: Features,
+    params: &ReduceParams,
+    progress: &mut dyn Progress,
+) -> Result<Reduced> {
+    params.validate()?;
+    let power = Fuzzifier::new(fuzzifier(params));
+    let mut job = Job {
+        tree,
+        features,
+        params,
+    };
+    let (goal, reason) = job.goal(progress)?;
+    let searched = match params.target {
+        Target::Tolerance(_) => tolerance::DONE,
+        _ => 0.0,
+    };
+    // Only the goal asks for it.
+    job.features.curvature = Vec::new();
+    let plan = job.plan(&goal);
+    let (clustering, index) = job.cluster(goal, &mut Part::new(progress, searched..1.0))?;
+    progress.update(Stage::Place, 0.0)?;
+    let arrangement = job.arrangement(&clustering, index);
+    let members = Members::new(&clustering.shares, clustering.centers.len());
+    let mut placed = job.place(&clustering, &arrangement, &members, plan);
+    drop(job);
+    let stats = stats(tree, &clustering, &arrangement.around, power);
+    drop((arrangement, clustering.spacing));
+    progress.update(Stage::Place, 0.5)?;
+    let nearest = if plan.placement == Placement::Sample {
+        placement::snap(tree, &members, &mut placed)
+    } else {
+        par::map(
+            placed.len(),
+            || (),
+            |i, ()| placement::nearest(tree, &members, i, placed[i].position),
+        )
+    };
+    let reduced = placement::carry(cloud, tree, &members, &placed, &nearest, &params.attributes);
+    let mut weights = vec![0.0; placed.len()];
+    for s in &clustering.shares {
+        weights[s.center[0] as usize] += 1.0;
+    }
+    let assignment = params.assignment.then(|| {
+        let mut assignment = vec![0; tree.points.len()];
+        for (s, &i) in clustering.shares.iter().zip(&tree.order) {
+            assignment[i as usize] = s.center[0];
+        }
+        assignment
+    });
+    let cells = params.cells.then(|| {
+        let ranges = clustering.cells.iter();
+        ranges
+            .map(|range| corners(&tree.points[range.clone()]))
+            .collect()
+    });
+    progress.update(Stage::Place, 1.0)?;
+    Ok(Reduced {
+        cloud: reduced,
+        spacing: placed.iter().map(|p| p.spacing).collect(),
+        variation: placed.iter().map(|p| p.variation).collect(),
+        weights,
+        nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
+        assignment,
+        cells,
+        shares: clustering.shares,
+        stats,
+        reason,
+    })
+}
+
+/// Corners of the box of some points.
+fn corners(points: &[Vec3]) -> [Vec3; 2] {
+    let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    [low, high]
+}
+
+/// m of eq. 1-5, by default the method's.
+fn fuzzifier(params: &ReduceParams) -> f64 {
+    params.fuzzifier.unwrap_or(match params.method {
+        Method::Adaptive => 1.5,
+        Method::Paper => 2.0,
+    })
+}
+
+/// What the options ask for.
+enum Goal {
+    /// This many points by the paper's method.
+    Count(usize),
+    /// This many points with this density.
+    Density(usize, Density),
+    /// Flat cells are reduced, the others kept: the paper's own criterion, for which both methods take its cells.
+    Flatness,
+}
+
+/// How centres are placed.
+#[derive(Clone, Copy)]
+struct Plan {
+    placement: Placement,
+    /// Whether those next to open borders move out to them.
+    to_borders: bool,
+}
+
+/// What a reduction works on.
+struct Job<'a> {
+    tree: &'a Octree,
+    features: Features,
+    params: &'a ReduceParams,
+}
+
+/// How centres lie to each other before they are placed.
+struct Arrangement {
+    /// The area of surface that each stands for.
+    areas: Vec<f64>,
+    around: Vec<Around>,
+}
+
+impl Job<'_> {
+    /// What to do, and why it is not what was asked for, where it is not.
+    fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal, String)> {
+        if let Target::Tolerance(tolerance) = self.params.target {
+            let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
+            return Ok((self.within(tolerance, progress)?, reason));
+        }
+        let count = self.params.target.count(self.tree.points.len());
+        let goal = match (count, self.params.method) {
+            (None, _) => Goal::Flatness,
+            (Some(count), Method::Paper) => Goal::Count(count),
+            (Some(count), Method::Adaptive) => {
+                let alpha = self.params.curvature_weight;
+                let density = Density::new(self.tree, &self.features, count, alpha);
+                Goal::Density(count, density)
+            }
+        };
+        Ok((goal, String::new()))
+    }
+
+    /// Looks for the fewest points that keep the surface within a tolerance.
+    fn within(&self, tolerance: f64, progress: &mut dyn Progress) -> Result<Goal> {
+        let curvature = CurvatureSpacing::new(self.tree, &self.features);
+        let goal = |chord: f64| {
+            let density = curvature.within(chord);
+            match self.params.method {
+                Method::Paper => Goal::Count(density.count()),
+                Method::Adaptive => Goal::Density(density.count(), density),
+            }
+        };
+        let n = self.tree.points.len();
+        let chord = tolerance::search(&self.features, tolerance, progress, |chord, progress| {
+            let goal = goal(chord);
+            let plan = self.plan(&goal);
+            let (clustering, index) = self.cluster(goal, progress)?;
+            if clustering.centers.len() == n {
+                return Ok(None);
+            }
+            let arrangement = self.arrangement(&clustering, index);
+            let members = Members::new(&clustering.shares, clustering.centers.len());
+            let placed = self.place(&clustering, &arrangement, &members, plan);
+            let positions: Vec<Vec3> = placed.iter().map(|p| p.position).collect();
+            let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
+            let patches = Patches::fit(&Octree::build(&positions), &normals);
+            let denoised = |k| self.features.denoised(self.tree, k);
+            cloud_distances(denoised, &clustering.shares, &patches, progress).map(Some)
+        })?;
+        Ok(goal(chord))
+    }
+
+    /// The clusters, and a tree of their centres.
+    fn cluster(&self, goal: Goal, progress: &mut dyn Progress) -> Result<(Clustering, Octree)> {
+        let Job {
+            tree,
+            features,
+            params,
+        } = self;
+        match goal {
+            Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {
+                Ok(keep_all(tree, features))
+            }
+            Goal::Flatness => paper::cluster(tree, features, None, params, progress),
+            Goal::Count(count) => paper::cluster(tree, features, Some(count), params, progress),
+            Goal::Density(count, density) => {
+                adaptive(tree, features, (count, density), params, progress)
+            }
+        }
+    }
+
+    /// How centres are placed: points that are all kept, and the paper's centres, stay where they are.
+    fn plan(&self, goal: &Goal) -> Plan {
+        let dense = match goal {
+            Goal::Density(count, _) => *count < self.tree.points.len(),
+            Goal::Count(_) | Goal::Flatness => false,
+        };
+        let placement = match self.params.placement {
+            Placement::Sample => Placement::Sample,
+            other if dense => other,
+            _ => Placement::Center,
+        };
+        Plan {
+            placement,
+            to_borders: dense && placement != Placement::Center,
+        }
+    }
+
+    /// `index` is a tree of the centres.
+    fn arrangement(&self, clustering: &Clustering, index: Octree) -> Arrangement {
+        let areas = placement::areas(&self.features, &clustering.shares, clustering.centers.len());
+        let around = surroundings::measure(&index, |i| areas[i].sqrt() as f32);
+        Arrangement { areas, around }
+    }
+
+    fn place(
+        &self,
+        clustering: &Clustering,
+        arrangement: &Arrangement,
+        members: &Members,
+        plan: Plan,
+    ) -> Vec<Placed> {
+        let power = Fuzzifier::new(fuzzifier(self.params));
+        let mut placed = placement::place(
+            self.tree,
+            &self.features,
+            (&clustering.centers, &arrangement.areas),
+            members,
+            (plan.placement, power),
+        );
+        if plan.to_borders {
+            borders::restore(
+                self.tree,
+                &self.features,
+                members,
+                &arrangement.around,
+                &mut placed,
+            );
+        }
+        placed
+    }
+}
+
+fn keep_all(tree: &Octree, features: &Features) -> (Clustering, Octree) {
+    let alone = |i: u32| Shares {
+        center: [i; SHARES],
+        u: std::array::from_fn(|j| if j == 0 { 1.0 } else { 0.0 }),
+    };
+    let n = tree.points.len();
+    let clustering = Clustering {
+        centers: tree.points.clone(),
+        shares: (0..n as u32).map(alone).collect(),
+        spacing: features.spacing.clone(),
+        cells: Vec::new(),
+        iterations: 0,
+        kept: n,
+    };
+    (clustering, Octree::build(&tree.points))
+}
+
+/// Points of a cell so that it holds about 32 centres: enough to hide the cell's border, few enough that a point meets
+/// few centres that are too far to matter.
+fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
+    params
+        .cell_points
+        .unwrap_or((32 * n / count).clamp(64, 512))
+}
+
+fn adaptive(
+    tree: &Octree,
+    features: &Features,
+    (count, density): (usize, Density),
+    params: &ReduceParams,
+    progress: &mut dyn Progress,
+) -> Result<(Clustering, Octree)> {
+    let capacity = cell_points(count, tree.points.len(), params);
+    let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
+    let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let Density { spacing, share } = density;
+    drop(share);
+    let samples = Samples {
+        tree,
+        features,
+        spacing: &spacing,
+    };
+    let settling = Settling {
+        fuzzifier: fuzzifier(params),
+        epsilon: params.epsilon.unwrap_or(1e-2),
+        max_iterations: params.max_iterations.unwrap_or(5),
+    };
+    let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
+    let clustering = Clustering {
+        centers: clusters.centers,
+        shares: clusters.shares,
+        spacing,
+        cells,
+        iterations: clusters.iterations,
+        kept: 0,
+    };
+    Ok((clustering, clusters.index))
+}
+
+fn stats(
+    tree: &Octree,
+    clustering: &Clustering,
+    around: &[Around],
+    power: Fuzzifier,
+) -> ReduceStats {
+    let centers = &clustering.centers;
+    let mut objective = 0.0;
+    for (p, s) in tree.points.iter().zip(&clustering.shares) {
+        for (i, u) in s.used() {
+            objective +=
+                power.raise(f64::from(u)) * f64::from(p.distance_squared(centers[i as usize]));
+        }
+    }
+    let mut wanted = vec![(0.0, 0u32); centers.len()];
+    for (s, &h) in clustering.shares.iter().zip(&clustering.spacing) {
+        let (sum, n) = &mut wanted[s.center[0] as usize];
+        *sum += f64::from(h);
+        *n += 1;
+    }
+    let apart = || around.iter().map(|a| f64::from(a.apart2));
+    let relative = apart()
+        .zip(&wanted)
+        .filter(|&(apart2, &(sum, _))| sum > 0.0 && apart2.is_finite())
+        .map(|(apart2, &(sum, n))| apart2.sqrt() * f64::from(n) / sum);
+    let separation = apart().fold(f64::INFINITY, f64::min);
+    ReduceStats {
+        cells: clustering.cells.len(),
+        iterations: clustering.iterations,
+        objective,
+        validity: if centers.len() > 1 && separation > 0.0 {
+            objective / (centers.len() as f64 * separation)
+        } else {
+            0.0
+        },
+        evenness: coefficient_of_variation(&relative.collect::<Vec<f64>>()),
+        kept: clustering.kept,
+    }
+}
+
+fn coefficient_of_variation(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n;
+    if mean > 0.0 {
+        variance.sqrt() / mean
+    } else {
+        0.0
+    }
+}
