@@ -21,6 +21,8 @@ export class EyeDome {
       near: { value: 0 },
       far: { value: 1 },
       reach: { value: 1 },
+      strength: { value: 1 },
+      parallel: { value: false },
     },
     depthTest: false,
     depthWrite: false,
@@ -29,14 +31,16 @@ export class EyeDome {
     fragmentShader: /* glsl */ `
       uniform sampler2D colors, depths;
       uniform vec2 size;
-      uniform float near, far, reach;
+      uniform float near, far, reach, strength;
+      uniform bool parallel;
       const float STRENGTH = 60.0;
       const float LIMIT = 0.012;
       const float FAR_SIDE = 0.14;
 
       float logDepth(ivec2 pixel) {
         float depth = texelFetch(depths, clamp(pixel, ivec2(0), ivec2(size) - 1), 0).r;
-        return log2(near * far / (far - depth * (far - near)));
+        // In parallel projection, as much as at the usual distance of two diagonals.
+        return parallel ? 0.7 * depth * (far - near) : log2(near * far / (far - depth * (far - near)));
       }
 
       void main() {
@@ -53,7 +57,7 @@ export class EyeDome {
         }
         float facing = 2.0 * color.a - 1.0;
         float solid = mix(FAR_SIDE, 1.0, facing);
-        gl_FragColor = vec4(solid * color.rgb * exp(-STRENGTH * facing * behind / 16.0), solid);
+        gl_FragColor = vec4(solid * color.rgb * exp(-strength * STRENGTH * facing * behind / 16.0), solid);
       }`,
   });
 
@@ -67,13 +71,15 @@ export class EyeDome {
   }
 
   /**
-   * Draws the scene through the pass, into the lower left part of the canvas of that size.
+   * Draws the scene through the pass, into the lower left part of the canvas of that size. What the renderer's scissor leaves out
+   * of the canvas stays as it was.
    * @param {import('three').WebGLRenderer} renderer
    * @param {import('three').Scene} scene
    * @param {import('three').PerspectiveCamera} camera
    * @param {{ width: number, height: number, ratio: number }} size
+   * @param {number} strength how much of it, 1 is all
    */
-  render(renderer, scene, camera, { width, height, ratio }) {
+  render(renderer, scene, camera, { width, height, ratio }, strength) {
     this.#target.viewport.set(0, 0, width, height);
     this.#target.scissor.set(0, 0, width, height);
     this.#target.scissorTest = true;
@@ -86,6 +92,8 @@ export class EyeDome {
     uniforms.near.value = camera.near;
     uniforms.far.value = camera.far;
     uniforms.reach.value = ratio;
+    uniforms.strength.value = strength;
+    uniforms.parallel.value = camera.projectionMatrix.elements[15] === 1;
     renderer.clear();
     this.#quad.render(renderer);
   }

@@ -1,134 +1,118 @@
+/** Colours for layers, and how they are read. */
 import { colorize } from './colormap.js';
+import { localSpacing } from './density.js';
+import { frameOf, toFrame } from './frame.js';
 import { creases, sharpPoints } from './sharp.js';
-import { localSpacing } from '../session/density.js';
-import { toFrame } from '../frame.js';
-import * as format from '../results/format.js';
+import { PAINT_WORDS } from './words.js';
 
 /**
- * @import { Outcome, Scan } from '../session/session.js'
- * @import { View } from '../viewer.js'
- *
- * How measured values are read from colours: the values at both ends, or two kinds.
- * @typedef {{ title: string, note: string, low: number, high: number, words: (value: number) => string }} Scale
- * @typedef {{ title: string, note: string, kinds: [string, string][] }} Kinds  CSS colours and their names
- *
- * What a layer's colours are, none for the theme's, and how they are read, where that needs saying.
- * @typedef {{ colors: Uint8Array | null, legend: Scale | Kinds | null }} Paint
- *
- * @typedef {{ scan: Scan, outcome: Outcome | null }} Subject
+ * @import { Paint, PaintName, PaintWords, Subject } from '../viewer.js'
+ * @import { ReducedCloud, SurfaceMesh } from '../types.js'
+ * @typedef {'points' | 'reduced' | 'mesh'} Name
  */
 
-/** What can be shown in colour, in the order of the menu. */
-export const PAINTS = /** @type {const} */ ({
-  natural: 'As scanned',
-  plain: 'Plain',
-  normals: 'Direction of the surface',
-  density: 'Density of the points',
-  error: 'Distance between scan and mesh',
-  sharp: 'Sharp places',
-});
+export { PAINT_WORDS };
 
-/** @typedef {keyof typeof PAINTS} PaintName */
+/** @type {readonly PaintName[]} */
+export const PAINTS = ['natural', 'plain', 'normals', 'density', 'error', 'sharp'];
 
 const SHARP = /** @type {const} */ ([222, 94, 12]);
 const SMOOTH = /** @type {const} */ ([142, 160, 170]);
 
-/** Whether there is something to paint. */
-export function isPossible(/** @type {PaintName} */ name, /** @type {Subject} */ { scan, outcome }) {
-  if (name === 'plain') return Boolean(scan.cloud.colors);
-  if (name === 'normals') return Boolean(outcome || scan.cloud.normals);
-  if (name === 'sharp') return Boolean(outcome);
-  if (name === 'error') return Boolean(outcome?.mesh?.distances);
+/** @param {PaintName} name @param {Subject} subject */
+export function canPaint(name, { cloud, reduced, mesh }) {
+  if (name === 'plain') return Boolean(cloud.colors);
+  if (name === 'normals') return Boolean(reduced || cloud.normals);
+  if (name === 'sharp') return Boolean(reduced);
+  if (name === 'error') return Boolean(reduced && mesh?.distances);
   return true;
 }
 
-/**
- * The paint of one layer; what is not possible is natural.
- * @param {PaintName} name
- * @param {View} view
- * @param {Subject} subject
- * @returns {Paint}
- */
-export function paintOf(name, view, subject) {
-  if (!isPossible(name, subject)) name = 'natural';
-  return PAINTERS[name](view, subject);
+/** @param {PaintName} name @param {Name} layer @param {Subject} subject @param {PaintWords} [words] @returns {Paint} */
+export function paintOf(name, layer, subject, words = PAINT_WORDS) {
+  return PAINTERS[canPaint(name, subject) ? name : 'natural'](layer, subject, words);
 }
 
-/** @type {Record<PaintName, (view: View, subject: Subject) => Paint>} */
+/** @type {Record<PaintName, (layer: Name, subject: Subject, words: PaintWords) => Paint>} */
 const PAINTERS = {
-  natural: (view, subject) => ({ colors: sourceOf(view, subject)?.colors ?? null, legend: null }),
+  natural: (layer, subject) => ({ colors: sourceOf(layer, subject)?.colors ?? null, legend: null }),
 
   plain: () => ({ colors: null, legend: null }),
 
-  normals(view, subject) {
-    const { scan, outcome } = subject;
-    const own = sourceOf(view, subject)?.normals;
-    const normals = own ?? (outcome && spread(outcome, 3, (i, axis) => outcome.reduced.normals[3 * i + axis]));
-    if (!normals) return PAINTERS.natural(view, { scan, outcome });
+  normals(layer, subject, words) {
+    const { reduced } = subject;
+    const own = sourceOf(layer, subject)?.normals;
+    const normals = own ?? (reduced && spread(reduced, 3, (i, axis) => reduced.normals[3 * i + axis]));
+    if (!normals) return PAINTERS.natural(layer, subject, words);
     return { colors: Uint8Array.from(normals, (value) => 127.5 * (value + 1)), legend: null };
   },
 
-  density(view, subject) {
-    const source = sourceOf(view, subject);
-    if (!source) return PAINTERS.natural(view, subject);
-    const { frame } = subject.scan;
+  density(layer, subject, words) {
+    const source = sourceOf(layer, subject);
+    if (!source) return PAINTERS.natural(layer, subject, words);
+    const frame = frameIn(subject);
     const spacing = localSpacing(toFrame(source, frame)).map((distance) => distance * frame.diagonal);
     const [low, high] = [quantile(spacing, 0.02), quantile(spacing, 0.98)];
-    const legend = { title: 'Distance between neighbours', note: 'about, in file units', low, high, words: format.length };
-    return { colors: colorize(spacing, low, high), legend };
+    return { colors: colorize(spacing, low, high), legend: { ...words.density, low, high, words: words.length } };
   },
 
-  error(view, { scan, outcome }) {
-    const distances = /** @type {NonNullable<import('pointweave').SurfaceMesh['distances']>} */ (outcome?.mesh?.distances);
+  error(layer, subject, { error, length, percent }) {
+    const { diagonal } = frameIn(subject);
+    const mesh = /** @type {SurfaceMesh} */ (subject.mesh);
+    const distances = /** @type {NonNullable<SurfaceMesh['distances']>} */ (mesh.distances);
     const values = {
       points: () => distances.points,
-      reduced: () => meanOfMembers(/** @type {Outcome} */ (outcome), distances.points),
-      mesh: () => filled(distances.vertices, /** @type {import('pointweave').SurfaceMesh} */ (outcome?.mesh).indices),
-    }[view]();
-    // One scale for all views; the few points beyond it take its end.
+      reduced: () => meanOfMembers(/** @type {ReducedCloud} */ (subject.reduced), distances.points),
+      mesh: () => filled(distances.vertices, mesh.indices),
+    }[layer]();
+    // One scale for all layers; the few points beyond it take its end.
     const high = Math.max(quantile(distances.points, 0.99), 1e-9);
-    const words = (/** @type {number} */ share) => `${format.length(share * scan.frame.diagonal)}\n${format.percent(share)}`;
-    const bare = view === 'mesh' && values.some(Number.isNaN) ? '; grey: no points there' : '';
-    const note = `in file units and of the diagonal; 1 % of the points are beyond${bare}`;
-    const title = { points: 'Distance to the mesh', reduced: 'Distance of its points to the mesh', mesh: 'Distance to the scan' }[view];
-    return { colors: colorize(values, 0, high), legend: { title, note, low: 0, high, words } };
+    const words = (/** @type {number} */ share) => `${length(share * diagonal)}\n${percent(share)}`;
+    const bare = layer === 'mesh' && values.some(Number.isNaN) ? error.unknown : '';
+    return { colors: colorize(values, 0, high), legend: { title: error.titles[layer], note: error.note + bare, low: 0, high, words } };
   },
 
-  sharp(view, { scan, outcome: made }) {
-    const outcome = /** @type {Outcome} */ (made);
-    const sharp = /** @type {Record<View, () => ArrayLike<number>>} */ ({
-      reduced: () => sharpPoints(outcome.reduced, scan),
-      points: () => {
-        const reduced = sharpPoints(outcome.reduced, scan);
-        return spread(outcome, 1, (i) => reduced[i]) ?? new Uint8Array(scan.count);
-      },
-      mesh: () => (outcome.mesh ? creases(outcome.mesh) : new Uint8Array(0)),
-    })[view]();
+  sharp(layer, subject, { sharp: words, percent }) {
+    const sharp = sharpIn(layer, subject);
     const colors = new Uint8Array(3 * sharp.length);
     let count = 0;
     for (let i = 0; i < sharp.length; i++) {
       colors.set(sharp[i] ? SHARP : SMOOTH, 3 * i);
       count += sharp[i];
     }
-    const share = count / Math.max(1, sharp.length);
+    const note = words.note(percent(count / Math.max(1, sharp.length)), layer);
     const css = (/** @type {readonly number[]} */ color) => `rgb(${color.join(' ')})`;
-    const note = `${format.percent(share)} of the ${view === 'mesh' ? 'vertices' : 'points'} are on edges, corners and tight curves`;
-    return { colors, legend: { title: 'Sharp places', note, kinds: [[css(SHARP), 'sharp'], [css(SMOOTH), 'smooth']] } };
+    return { colors, legend: { title: words.title, note, kinds: [[css(SHARP), words.sharp], [css(SMOOTH), words.smooth]] } };
   },
 };
 
-/** What a view draws. */
-function sourceOf(/** @type {View} */ view, /** @type {Subject} */ { scan, outcome }) {
-  return view === 'points' ? scan.cloud : outcome?.[view] ?? null;
+/** What a layer draws. @param {Name} layer @param {Subject} subject */
+function sourceOf(layer, { cloud, reduced, mesh }) {
+  return { points: cloud, reduced, mesh }[layer] ?? null;
+}
+
+/** @param {Subject} subject */
+function frameIn({ frame, cloud }) {
+  return frame ?? frameOf(cloud);
+}
+
+/** Which points or vertices of a layer are on sharp features. @param {Name} layer @param {Subject} subject @returns {ArrayLike<number>} */
+function sharpIn(layer, subject) {
+  const { cloud, mesh } = subject;
+  if (layer === 'mesh') return mesh ? creases(mesh) : new Uint8Array(0);
+  const reduced = /** @type {ReducedCloud} */ (subject.reduced);
+  const sharp = sharpPoints(reduced, cloud, frameIn(subject).diagonal);
+  if (layer === 'reduced') return sharp;
+  return spread(reduced, 1, (i) => sharp[i]) ?? new Uint8Array(cloud.positions.length / 3);
 }
 
 /**
  * For every input point the value of the reduced point that it belongs to; null where nobody knows which that is.
- * @param {Outcome} outcome
+ * @param {ReducedCloud} reduced
  * @param {number} size values a point
  * @param {(reduced: number, part: number) => number} value
  */
-function spread({ reduced: { assignment, weights } }, size, value) {
+function spread({ assignment, weights }, size, value) {
   if (!assignment) return null;
   const out = new Float32Array(size * assignment.length);
   for (let i = 0; i < assignment.length; i++) {
@@ -138,18 +122,20 @@ function spread({ reduced: { assignment, weights } }, size, value) {
   return out;
 }
 
-/** For every reduced point the mean over the input points that belong to it. */
-function meanOfMembers(/** @type {Outcome} */ { reduced: { assignment, weights } }, /** @type {Float32Array} */ values) {
+/** For every reduced point the mean over the input points that belong to it. @param {ReducedCloud} reduced @param {Float32Array} values */
+function meanOfMembers({ assignment, weights }, values) {
   const out = new Float32Array(weights.length);
   assignment?.forEach((reduced, i) => (out[reduced] += values[i] / weights[reduced]));
   return out;
 }
 
 /**
- * Values of vertices to which no point was nearest, from their neighbours: a few lie between points everywhere. What is
- * further from any point stays unknown.
+ * Values of vertices to which no point was nearest, from their neighbours: a few lie between points everywhere. What is further from
+ * any point stays unknown.
+ * @param {Float32Array} values
+ * @param {Uint32Array} indices
  */
-function filled(/** @type {Float32Array} */ values, /** @type {Uint32Array} */ indices) {
+function filled(values, indices) {
   let known = values;
   for (let pass = 0; pass < 2; pass++) {
     const sums = new Float32Array(values.length);
@@ -165,8 +151,8 @@ function filled(/** @type {Float32Array} */ values, /** @type {Uint32Array} */ i
   return known;
 }
 
-/** The value that a share of the others are under. */
-function quantile(/** @type {Float32Array} */ values, /** @type {number} */ share) {
+/** The value that a share of the others are under. @param {Float32Array} values @param {number} share */
+function quantile(values, share) {
   const known = values.filter((value) => !Number.isNaN(value)).sort();
   return known[Math.floor(share * (known.length - 1))] ?? 0;
 }
