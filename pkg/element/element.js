@@ -5,7 +5,7 @@ import { calm, inSight } from '../viewer/watching.js';
 import { Reflecting } from './attributes.js';
 import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
-import { openSource } from './source.js';
+import { isNamedGlb, openSource } from './source.js';
 import { Speech } from './speech.js';
 import { inReach } from './watching.js';
 import { WORDS } from './words.js';
@@ -228,10 +228,10 @@ export class PointWeaveElement extends Reflecting {
     this.#panels.begin();
     this.#speech.begin();
     try {
-      const [{ viewer, readGlb }, source] = await Promise.all([this.#ready(), this.#source ?? openSource(src, this.view, work)]);
+      const [viewer, source] = await Promise.all([this.#ready(), this.#source ?? openSource(src, this.view, work)]);
       signal.throwIfAborted();
       if (!this.#source) {
-        const shown = source.kind === 'glb' ? await readGlb(source.bytes) : { ...source.cloud, normals: undefined };
+        const shown = source.kind === 'glb' ? await (await import('../viewer/glb.js')).readGlb(source.bytes) : { ...source.cloud, normals: undefined };
         signal.throwIfAborted();
         viewer.show(shown);
         this.#source = source;
@@ -256,12 +256,13 @@ export class PointWeaveElement extends Reflecting {
     }
   }
 
-  /** The viewer, made when it is first needed. */
+  /** The viewer, made when it is first needed, and what reads a GLB where one is likely to come. */
   async #ready() {
-    const { createViewer, readGlb } = await import('./drawing.js').catch((error) => {
+    const glb = isNamedGlb(this.src) && import('../viewer/glb.js');
+    const [{ createViewer }] = await Promise.all([import('../viewer/viewer.js'), glb]).catch((error) => {
       throw new PointweaveError({ code: 'load-failed', message: `three.js did not load: ${error.message}` });
     });
-    if (this.#viewer) return { viewer: this.#viewer, readGlb };
+    if (this.#viewer) return this.#viewer;
     const viewer = createViewer(this.#parts.canvas, { interactive: this.controls, up: this.up });
     viewer.addEventListener('move', ({ detail: { by } }) => {
       if (by === 'keys') this.#speech.atRest(() => PointWeaveElement.words.pose(viewer.pose));
@@ -270,7 +271,7 @@ export class PointWeaveElement extends Reflecting {
     this.#viewer = viewer;
     this.#color();
     this.#dress();
-    return { viewer, readGlb };
+    return viewer;
   }
 
   /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer */
