@@ -55,11 +55,11 @@ export class Stage {
     this.layers.delete(name);
     if (!what) return;
     const object = layerOf(what, frame);
-    this.root.add(object);
     this.add(name, [object], thinned(/** @type {Float32Array} */ (object.geometry.getAttribute('position').array)));
+    this.root.add(object);
   }
 
-  /** Makes a layer of objects that stand under the root. @param {string} name @param {(Points | Mesh)[]} objects @param {Float32Array} outline */
+  /** Makes a layer of objects. @param {string} name @param {(Points | Mesh)[]} objects @param {Float32Array} outline */
   add(name, objects, outline) {
     const taken = [...this.layers.values()].map(({ bit }) => bit);
     const bit = BITS.find((one) => !taken.includes(one));
