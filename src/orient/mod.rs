@@ -53,6 +53,14 @@ pub struct Signs {
     pub kept: Vec<bool>,
 }
 
+impl Signs {
+    /// The other side of everything.
+    pub fn invert(&mut self) {
+        self.signs.iter_mut().for_each(|s| *s = -*s);
+        self.normals.iter_mut().for_each(|n| *n = -*n);
+    }
+}
+
 /// An edge between sub-domains `a` < `b`; positive weight: same sign.
 #[derive(Debug, Clone, Copy)]
 struct Edge {

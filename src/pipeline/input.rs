@@ -119,6 +119,9 @@ impl Input<'_> {
             normals,
             attributes,
             origin,
+            viewpoints,
+            up,
+            seen_from_above,
         } = cloud;
         let (of, tree) = (&self.cloud, &self.tree);
         let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
@@ -127,6 +130,7 @@ impl Input<'_> {
             && (of.frame, of.origin) == (*frame, *origin)
             && tree.points.iter().zip(&tree.order).all(place)
             && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+            && (&of.viewpoints, of.up, of.seen_from_above) == (viewpoints, *up, *seen_from_above)
     }
 }
 

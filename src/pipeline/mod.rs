@@ -5,7 +5,9 @@ pub(crate) mod input;
 use crate::base::clock::Clock;
 use crate::base::error::{Error, Result};
 use crate::base::par;
-use crate::base::params::{COLORS, Outliers, ReduceParams, Resolution, SurfaceParams, Target};
+use crate::base::params::{
+    COLORS, Orientation, Outliers, ReduceParams, Resolution, SurfaceParams, Target,
+};
 use crate::base::progress::Progress;
 use crate::cloud::octree::Octree;
 use crate::cloud::{Attribute, Cloud};
@@ -21,7 +23,7 @@ use crate::pipeline::input::{Input, Origin, measure};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
 use crate::report::distance::{mesh_distances, vertex_distances};
-use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
+use crate::report::{self, DistanceStats, OrientationReport, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -175,7 +177,8 @@ fn reduce_input(
 ///
 /// # Errors
 /// [`Error::TooFewPoints`] (under 4), [`Error::Degenerate`] (all points on a line or at one place),
-/// [`Error::BadOption`] (`orient: false` without normals too), [`Error::Cancelled`].
+/// [`Error::BadOption`] (`orient: false`, or an `orientation` by evidence that the cloud has not got, too),
+/// [`Error::Cancelled`].
 pub fn reconstruct(
     cloud: &Cloud,
     params: &SurfaceParams,
@@ -331,10 +334,15 @@ fn surface(
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
     }
-    let signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
+    let mut signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
     let field = Field::new(&fits, &signs, &sites);
     let how = extract_params(&sites, params);
-    let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    drop(field);
+    if params.flip {
+        signs.invert();
+        mesh.invert();
+    }
 
     let normals = reduced.cloud.normals.get_or_insert_default();
     normals.resize(reduced.cloud.points.len(), Vec3::ZERO);
@@ -380,6 +388,7 @@ fn surface(
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
         orientation_energy_before: signs.energy_before,
+        orientation: OrientationReport::default(),
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
@@ -457,6 +466,18 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
             option: "orient".into(),
             expected: "true, or a cloud with normals".into(),
             found: "false and no normals".into(),
+        });
+    }
+    let (lacks, evidence) = match params.orientation {
+        Orientation::Normals => (cloud.normals.is_none(), "normals"),
+        Orientation::Viewpoints => (cloud.viewpoints.is_none(), "viewpoints"),
+        _ => (false, ""),
+    };
+    if lacks {
+        return Err(Error::BadOption {
+            option: "orientation".into(),
+            expected: format!("a cloud with {evidence}"),
+            found: format!("'{evidence}' and the cloud has none"),
         });
     }
     match &params.reduce {

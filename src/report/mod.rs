@@ -4,11 +4,14 @@
 //! serialise in camel case, as JS sees them; a number that does not exist for a job is 0, and `reason` says why.
 
 pub mod distance;
+mod knowledge;
 
 use crate::base::lists::{Lists, pack, unpack};
 use crate::base::progress::Stage;
 use glam::{DVec3, Vec3};
 use serde::{Serialize, Serializer, ser::SerializeMap};
+
+pub use knowledge::{Doubt, OrientationReport, Source, SourceShare, WeakestTie};
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -107,6 +110,8 @@ pub struct ReduceReport {
     pub threads: usize,
     /// Why the result is not what was asked to the letter (a target out of reach, a fallback); empty where it is.
     pub reason: String,
+    /// What may not be as it should.
+    pub doubts: Vec<Doubt>,
 }
 
 /// What a reconstruction did: all of [`ReduceReport`] (`distance` is then from the input points to the mesh), and:
@@ -136,6 +141,8 @@ pub struct SurfaceReport {
     pub orientation_energy: f64,
     /// The same before conflicts were solved over the whole graph.
     pub orientation_energy_before: f64,
+    /// What decided which side is out.
+    pub orientation: OrientationReport,
 }
 
 /// The connectivity of a triangle mesh.
