@@ -133,7 +133,9 @@ fn summary(summary: &Summary) -> JsResult {
         ("stations", stations(&summary.stations)?),
         (
             "up",
-            optional(&summary.up, |up| up.map(JsValue::from).iter().collect::<Array>()),
+            optional(&summary.up, |up| {
+                up.map(JsValue::from).iter().collect::<Array>()
+            }),
         ),
         ("seenFromAbove", summary.seen_from_above.into()),
     ])
