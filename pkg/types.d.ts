@@ -495,6 +495,9 @@ export const sample: Engine['sample'];
 /** Resolves when the engine is ready to compute. */
 export function createEngine(options?: EngineOptions): Promise<Engine>;
 
+/** What told which side is out, for people: `report.orientation` as part of a sentence. */
+export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
+
 /** What is taken for each option that is not given; `undefined` where that follows from other options. */
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };
 
