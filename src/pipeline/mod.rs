@@ -19,11 +19,12 @@ use crate::mesh::attach::attach;
 use crate::mesh::field::Field;
 use crate::mesh::{ExtractParams, Mesh, extract};
 use crate::orient;
+use crate::orient::evidence::Evidence;
 use crate::pipeline::input::{Input, Origin, measure};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
 use crate::report::distance::{mesh_distances, vertex_distances};
-use crate::report::{self, DistanceStats, OrientationReport, ReduceReport, SurfaceReport};
+use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -231,8 +232,8 @@ fn reconstruct_input(
     surface(input, fitted, params, clock)
 }
 
-/// The reduced cloud, and where its points are for the fit.
-type Reduction = (Reduced, Vec<Vec3>);
+/// The reduced cloud, where its points are for the fit, and what is known of their outer side.
+type Reduction = (Reduced, Vec<Vec3>, Evidence);
 
 /// What is remembered of a cloud from one call to the next.
 #[derive(Debug, Default)]
@@ -313,7 +314,7 @@ struct Measured {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions): Reduction,
+    (mut reduced, positions, evidence): Reduction,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -334,14 +335,26 @@ fn surface(
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
     }
-    let mut signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
+    let evidence = evidence.at_sites(&site_of, sites.tree.points.len());
+    let rules = (params.orientation, params.propagation);
+    let mut signs = orient::orient(&fits, &sites, &evidence, rules, &mut clock)?;
+    // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
+    let inward = signs.look_inward(&sites);
+    if inward {
+        signs.invert();
+    }
     let field = Field::new(&fits, &signs, &sites);
     let how = extract_params(&sites, params);
     let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
     drop(field);
+    if inward {
+        signs.invert();
+    }
+    if inward != params.flip {
+        mesh.invert();
+    }
     if params.flip {
         signs.invert();
-        mesh.invert();
     }
 
     let normals = reduced.cloud.normals.get_or_insert_default();
@@ -377,7 +390,10 @@ fn surface(
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
     let surface_report = SurfaceReport {
-        reduce: report.clone(),
+        reduce: ReduceReport {
+            doubts: report::doubts(&signs.account),
+            ..report.clone()
+        },
         triangles: mesh.triangles.len(),
         components: topology.components,
         boundary_edges: topology.boundary_edges,
@@ -388,7 +404,7 @@ fn surface(
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
         orientation_energy_before: signs.energy_before,
-        orientation: OrientationReport::default(),
+        orientation: signs.account,
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
@@ -533,7 +549,8 @@ fn points_to_fit(
                 Some(spare) if is_few(reduced.cloud.len()) => features = spare,
                 _ => {
                     let positions = reduced.cloud.points.clone();
-                    return Ok((reduced, positions));
+                    let evidence = evidence(cloud, tree, &reduced);
+                    return Ok((reduced, positions, evidence));
                 }
             }
         }
@@ -549,7 +566,12 @@ fn points_to_fit(
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    Ok((reduced, positions))
+    let evidence = evidence(cloud, tree, &reduced);
+    Ok((reduced, positions, evidence))
+}
+
+fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
+    Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
 }
 
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for

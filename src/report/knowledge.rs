@@ -1,5 +1,6 @@
-//! How a result knows what it says: sources, shares, doubts.
+//! What may not be as it should: doubts.
 
+use crate::orient::account::{Account, Source};
 use serde::Serialize;
 
 /// Something about a result that may not be as it should, for machines and for people.
@@ -13,57 +14,63 @@ pub struct Doubt {
     pub share: Option<f64>,
 }
 
-/// What decides which side of a piece of surface is out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum Source {
-    /// The cloud's own normals.
-    Normals,
-    /// The places that it was seen from.
-    Viewpoints,
-    /// That it was seen from above.
-    Above,
-    /// That it looks as a camera at the origin sees.
-    Camera,
-    /// That it encloses something.
-    Shell,
-    /// The option, or the rule for sheets, that up is out.
-    Up,
-    /// Nothing.
-    Guess,
-}
+/// Shares of the surface that are not worth a word.
+const LITTLE: f64 = 0.01;
+/// The share of what a sensor says that the result may contradict: grazing views and outlines.
+const GRAZING: f64 = 0.03;
+/// Sources that agree over less than this share disagree.
+const AGREE: f64 = 0.8;
+/// [`crate::orient::account::WeakestTie::strength`] under which a side is as good as a guess.
+const WEAK: f64 = 0.3;
 
-/// What a source had to say.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct SourceShare {
-    /// Which.
-    pub source: Source,
-    /// Share of the surface (0-1) whose side it decided.
-    pub share: f64,
-    /// Share of what it says anything about (0-1) where the result agrees with it.
-    pub agreement: f64,
-}
-
-/// The part of the surface whose side hangs on the least.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct WeakestTie {
-    /// Share of the surface (0-1) that would turn.
-    pub share: f64,
-    /// What holds it: the sum of weights that speak for its side, less those against it. Neighbouring sub-domains of one sheet
-    /// have a weight of about 0.5.
-    pub strength: f64,
-}
-
-/// What decided which side is out.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct OrientationReport {
-    /// Every source that said anything; the shares add up to 1.
-    pub sources: Vec<SourceShare>,
-    /// Share of the surface (0-1) whose side is a guess.
-    pub guessed: f64,
-    /// Of the parts that are not alone and have over 1 % of the surface.
-    pub weakest_tie: Option<WeakestTie>,
+/// What may be wrong with the sides.
+pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
+    let mut doubts = Vec::new();
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let mut doubt = |code, share: f64, message: String| {
+        doubts.push(Doubt {
+            code,
+            message,
+            share: Some(share),
+        });
+    };
+    if account.guessed > LITTLE {
+        let share = percent(account.guessed);
+        let message = format!("Which side is out is a guess for {share} of the surface.");
+        doubt("side-guessed", account.guessed, message);
+    }
+    let mut disagree = 0.0;
+    for said in &account.sources {
+        let (name, is_sensor) = match said.source {
+            Source::Normals => ("normals", false),
+            Source::Viewpoints => ("viewpoints", true),
+            Source::Camera => ("camera", true),
+            _ => continue,
+        };
+        let against = 1.0 - said.agreement;
+        if said.agreement < AGREE {
+            disagree = f64::max(disagree, against);
+        } else if is_sensor && against > GRAZING {
+            let message = format!(
+                "{} of what the {name} saw shows its inner side.",
+                percent(against)
+            );
+            doubt("contradicts-sensor", against, message);
+        }
+    }
+    if disagree > 0.0 {
+        let message = format!(
+            "What is known of the outer side contradicts itself or the surface over {} of it.",
+            percent(disagree)
+        );
+        doubt("sources-disagree", disagree, message);
+    }
+    if let Some(tie) = account.weakest_tie.filter(|tie| tie.strength < WEAK) {
+        let message = format!(
+            "Next to nothing ties {} of the surface to the rest: it may be inside out.",
+            percent(tie.share)
+        );
+        doubt("weak-tie", tie.share, message);
+    }
+    doubts
 }

@@ -8,10 +8,13 @@ mod knowledge;
 
 use crate::base::lists::{Lists, pack, unpack};
 use crate::base::progress::Stage;
+use crate::base::sets::Sets;
 use glam::{DVec3, Vec3};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-pub use knowledge::{Doubt, OrientationReport, Source, SourceShare, WeakestTie};
+pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
+pub use knowledge::Doubt;
+pub(crate) use knowledge::doubts;
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -331,46 +334,6 @@ fn count_duplicates(triangles: &[[u32; 3]], vertex_count: usize) -> usize {
         first[t[0] as usize] = i as u32;
     }
     duplicates
-}
-
-/// Disjoint sets of `0..n`; the smallest member names its set.
-pub(crate) struct Sets(Vec<u32>);
-
-impl Sets {
-    pub(crate) fn new(n: usize) -> Sets {
-        Sets((0..n as u32).collect())
-    }
-
-    pub(crate) fn find(&mut self, i: u32) -> u32 {
-        let mut i = i;
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-
-    /// The number of each member's set, in the order of their least members, and how many sets there are.
-    pub(crate) fn numbered(self) -> (Vec<u32>, usize) {
-        let (mut of, mut count) = (self.0, 0);
-        for i in 0..of.len() {
-            // A link leads to a lesser member, which has its number already.
-            let up = of[i] as usize;
-            of[i] = if up == i {
-                count += 1;
-                count - 1
-            } else {
-                of[up]
-            };
-        }
-        (of, count as usize)
-    }
 }
 
 /// The three corners of a triangle.
