@@ -25,6 +25,24 @@ export type Carry =
   /** The value of the nearest input point. */
   | 'nearest';
 
+/** What decides which side is out. */
+export type Orientation =
+  /**
+   * Everything that is known, as far as it holds when it is checked: the cloud's normals, its viewpoints, that it was seen
+   * from above, a depth camera at the origin; then closed shapes look outward and sheets up.
+   */
+  | 'auto'
+  /** The cloud's own normals, unchecked; the error `bad-option` where it has none. */
+  | 'normals'
+  /** The cloud's viewpoints: what was seen looks to where it was seen from. The error `bad-option` where it has none. */
+  | 'viewpoints'
+  /** Along the cloud's up axis, z where it has none. */
+  | 'up'
+  /** Away from the inside of what the surface encloses: objects. */
+  | 'outward'
+  /** Into it: rooms. */
+  | 'inward';
+
 /** Options of a reduction. */
 export interface ReduceOptions {
   /** How much to keep. Default `{ ratio: 1/3 }`. */
@@ -119,6 +137,13 @@ export interface ReconstructOptions {
   smoothing?: number | 'auto';
   /** Infer which side is out; `false` takes the cloud's own normals as they are. Default `true`. */
   orient?: boolean;
+  /**
+   * What decides which side is out. `propagation: 'paper'` and `orient: false` have their own rules. The report's
+   * `orientation` says what did decide. Default `'auto'`.
+   */
+  orientation?: Orientation;
+  /** Turn the whole result to its other side in the end. Default `false`. */
+  flip?: boolean;
   /**
    * Which inference chooses the signs of the local functions.
    * - `'global'` (default): Strongest agreements first over the whole graph, then flips that lower the energy.

@@ -23,6 +23,8 @@ export const FLAGS = {
   kernel: 'of the radial basis functions',
   smoothing: 'of the fit; auto follows the measured noise',
   orient: "infer which side is out: the file's normals say it",
+  orientation: 'what says which side is out; auto takes all that is known',
+  flip: 'turn the result to its other side',
   propagation: 'how orientation spreads',
   resolution: 'edge length of the mesh, a share of the diagonal',
   sharp: 'keep creases',

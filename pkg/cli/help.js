@@ -1,4 +1,5 @@
 /** What `--help` prints. */
+import { CLOUD_ROWS } from './cloud-flags.js';
 import { FORMATS } from './formats.js';
 import { flagsOf } from './flags.js';
 
@@ -50,7 +51,8 @@ export function help(command) {
   const flags = flagsOf(command);
   const output = command === 'inspect' ? '' : ` -o result.${command === 'reduce' ? 'ply' : 'glb'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
-  const listed = [...sections, ['General', [...(command === 'inspect' ? [] : OUTPUT), ...COMMON]]];
+  const works = command !== 'inspect';
+  const listed = [...sections, ['Scan', works ? CLOUD_ROWS : []], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   return `pointweave ${command}: ${DOES[command]}
 

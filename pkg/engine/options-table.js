@@ -33,6 +33,8 @@ export const RECONSTRUCT = {
   kernel: choice('triharmonic', 'biharmonic', 'thin-plate'),
   smoothing: number(0, 1000000, { or: 'auto', fallback: 'auto' }),
   orient: toggle(true),
+  orientation: choice('auto', 'normals', 'viewpoints', 'up', 'outward', 'inward'),
+  flip: toggle(false),
   propagation: choice('global', 'paper'),
   resolution: number(0.0001, 0.25, { or: 'auto', fallback: 'auto' }),
   sharp: toggle(true),

@@ -6,6 +6,8 @@ use super::{CALLS, HEAD, Table, camel_case, number};
 
 /// A space at which no line ends, until the lines are made.
 const TIE: char = '\u{a0}';
+/// Choices that have a name in TypeScript, too.
+const EXPORTED: [&str; 2] = ["Carry", "Orientation"];
 /// Columns of a line.
 const WIDTH: usize = 125;
 
@@ -18,22 +20,26 @@ pub fn render(table: &Table) -> String {
             format!("\n{}  | {{ {}: number }}", doc(2, &text, &[]), row.name)
         })
         .collect();
-    let carry: String = choices(table, "Carry")
-        .iter()
-        .map(|choice| {
-            format!(
-                "\n{}  | '{}'",
-                doc(2, &sentences(table, choice.docs), &[]),
-                choice.word
-            )
-        })
-        .collect();
     let mut text = format!(
-        "{HEAD}import type {{ ReducedCloud, SurfaceMesh }} from './types.js';\n\n\
-         {}export type Target ={targets};\n\n{}export type Carry ={carry};\n",
+        "{HEAD}import type {{ ReducedCloud, SurfaceMesh }} from './types.js';\n\n{}export type Target ={targets};\n",
         doc(0, &sentences(table, table.item("Target").docs), &[]),
-        doc(0, &sentences(table, table.item("Carry").docs), &[]),
     );
+    for name in EXPORTED {
+        let words: String = choices(table, name)
+            .iter()
+            .map(|choice| {
+                format!(
+                    "\n{}  | '{}'",
+                    doc(2, &sentences(table, choice.docs), &[]),
+                    choice.word
+                )
+            })
+            .collect();
+        text += &format!(
+            "\n{}export type {name} ={words};\n",
+            doc(0, &sentences(table, table.item(name).docs), &[])
+        );
+    }
     for (name, interface, _) in CALLS {
         let fields: String = table
             .rows(name)
@@ -60,6 +66,7 @@ fn field(table: &Table, row: &Row) -> String {
     let mut list = Vec::new();
     let of_its_type = |name: &str| sentences(table, table.item(name).docs);
     match row.kind {
+        "choice" if EXPORTED.contains(&row.ty) => text += &of_its_type(row.ty),
         "choice" => {
             text += &of_its_type(row.ty);
             for (i, choice) in choices(table, row.ty).iter().enumerate() {
@@ -104,6 +111,7 @@ fn field(table: &Table, row: &Row) -> String {
         "number" if !list.is_empty() => "number | 'auto'".into(),
         "number" | "integer" => "number".into(),
         "switch" => "boolean".into(),
+        "choice" if EXPORTED.contains(&row.ty) => row.ty.to_string(),
         "choice" => table
             .words(row.ty)
             .iter()
@@ -157,6 +165,7 @@ fn default(table: &Table, row: &Row) -> String {
         "named" => " Default `{}`.".into(),
         "nested" => " `false` is no reduction. Default {@link ReduceOptions}' defaults.".into(),
         "switch" => format!(" Default `{}`.", row.default),
+        "choice" => format!(" Default `'{}'`.", table.words(row.ty)[0]),
         _ => format!(" Default {}.", number(row.default)),
     }
 }
