@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { PointweaveError, inspect, read, reconstruct, reduce, sideInWords, write } from 'pointweave';
+import { PointweaveError, flip, inspect, read, reconstruct, reduce, sideInWords, write } from 'pointweave';
 import { load } from 'pointweave/core';
 import { parse } from '../../pkg/cli/arguments.js';
 import { withSaid } from '../../pkg/cli/cloud-flags.js';
@@ -188,6 +188,41 @@ test('the report says what told the side, and doubts only what is doubtful', asy
   const core = await load();
   const direct = core.reconstruct({ ...hills(), viewpoints: { positions: Float64Array.of(0, 0, -9) } });
   assert.ok(share(direct.report, 'viewpoints') > 0.99);
+});
+
+test('flip turns a mesh, or one piece of it with the points near it', async () => {
+  const count = 700;
+  const ball = sphere(count).positions;
+  const two = new Float32Array(6 * count);
+  two.set(ball);
+  two.set(ball.map((x, i) => 0.5 * x + (i % 3 === 0 ? 1.7 : 0)), 3 * count);
+  const mesh = await reconstruct({ positions: two });
+  assert.equal(mesh.report.components, 2);
+  const center = (p) => (p[0] < 1.1 ? [0, 0, 0] : [1.7, 0, 0]);
+  const away = (p) => p.map((x, k) => x - center(p)[k]);
+  assert.ok(facing(mesh, away) > 0.999);
+  const before = structuredClone(mesh);
+
+  const other = flip(mesh);
+  assert.ok(facing(other, away) < 0.001);
+  assert.deepEqual(other.normals, mesh.normals.map((x) => -x));
+  assert.deepEqual(other.cloud.normals, mesh.cloud.normals.map((x) => -x));
+  assert.deepEqual(flip(other), mesh);
+
+  const [small] = [...mesh.indices.keys()].filter((i) => i % 3 === 0 && mesh.positions[3 * mesh.indices[i]] > 1.2);
+  const half = flip(mesh, { triangle: small / 3 });
+  assert.ok(facing(half, (p) => away(p).map((x) => (p[0] < 1.1 ? x : -x))) > 0.999);
+  for (const { positions, normals } of [half, half.cloud]) {
+    for (let i = 0; i < positions.length; i += 3) {
+      const p = [...positions.slice(i, i + 3)];
+      const out = away(p).reduce((sum, x, k) => sum + x * normals[i + k], 0);
+      assert.ok(p[0] < 1.1 ? out > 0 : out < 0, `${p}`);
+    }
+  }
+  assert.deepEqual(mesh, before, 'what was given stays');
+
+  for (const triangle of [-1, 0.5, mesh.indices.length / 3, '0']) assert.throws(() => flip(mesh, { triangle }), { code: 'bad-option' });
+  for (const wrong of [undefined, null, {}, mesh.cloud]) assert.throws(() => flip(wrong), { code: 'bad-input' });
 });
 
 /** What the command line hands to the package. */
