@@ -44,8 +44,8 @@ export function cssGradient() {
   return `linear-gradient(to right, ${stops.join(', ')})`;
 }
 
-/** The sRGB bytes at a share of the way from the least to the greatest. */
-export function colorAt(/** @type {number} */ share) {
+/** The sRGB bytes at a share of the way from the least to the greatest. @param {number} share */
+export function colorAt(share) {
   const place = Math.min(1, Math.max(0, share)) * (STOPS.length - 1);
   const k = Math.min(STOPS.length - 2, Math.floor(place));
   const [from, to] = [STOPS[k], STOPS[k + 1]];
@@ -60,7 +60,7 @@ function srgb(L, a, b) {
   const l = (L + 0.3963377774 * a + 0.2158037573 * b) ** 3;
   const m = (L - 0.1055613458 * a - 0.0638541728 * b) ** 3;
   const s = (L - 0.0894841775 * a - 1.291485548 * b) ** 3;
-  return [
+  const [red, green, blue] = [
     4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
     -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
     -0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s,
@@ -68,4 +68,5 @@ function srgb(L, a, b) {
     const clamped = Math.min(1, Math.max(0, linear));
     return Math.round(255 * (clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * clamped ** (1 / 2.4) - 0.055));
   });
+  return /** @type {[number, number, number]} */ ([red, green, blue]);
 }

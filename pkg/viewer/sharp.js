@@ -1,5 +1,6 @@
-/** @import { ReducedCloud, SurfaceMesh } from 'pointweave' */
-/** @import { Scan } from '../session/session.js' */
+/** Which points and vertices are on sharp features. */
+
+/** @import { PointCloud, ReducedCloud, SurfaceMesh } from '../types.js' */
 
 /** Surface variation of a right-angled crease is about 0.1, of a sphere seen through a tenth of its radius 0.001. */
 const SHARP_VARIATION = 0.04;
@@ -7,13 +8,15 @@ const SHARP_VARIATION = 0.04;
 const CREASE_COSINE = Math.cos((22 * Math.PI) / 180);
 
 /**
- * Which reduced points are on sharp features: those with a large surface variation, and the samples that a flatness
- * target kept as they were. One byte a point.
+ * Which reduced points are on sharp features: those with a large surface variation, and the samples that a flatness target kept as
+ * they were. One byte a point.
+ * @param {ReducedCloud} reduced
+ * @param {PointCloud} cloud what it was made from
+ * @param {number} diagonal of its bounding box
  */
-export function sharpPoints(/** @type {ReducedCloud} */ reduced, /** @type {Scan} */ { cloud, frame, count }) {
-  const { positions, variation, weights, nearest } = reduced;
-  const all = weights.length === count;
-  const near = 1e-6 * frame.diagonal;
+export function sharpPoints({ positions, variation, weights, nearest }, cloud, diagonal) {
+  const all = 3 * weights.length === cloud.positions.length;
+  const near = 1e-6 * diagonal;
   return Uint8Array.from(variation, (value, i) => {
     if (value > SHARP_VARIATION) return 1;
     if (all || weights[i] !== 1) return 0;
@@ -22,8 +25,8 @@ export function sharpPoints(/** @type {ReducedCloud} */ reduced, /** @type {Scan
   });
 }
 
-/** Which vertices lie on creases of the mesh. One byte a vertex. */
-export function creases(/** @type {SurfaceMesh} */ { positions, indices }) {
+/** Which vertices lie on creases of the mesh. One byte a vertex. @param {Pick<SurfaceMesh, 'positions' | 'indices'>} mesh */
+export function creases({ positions, indices }) {
   const mean = new Float32Array(positions.length);
   /** @type {[number, number, number]} */
   const normal = [0, 0, 0];

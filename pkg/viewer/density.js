@@ -8,7 +8,7 @@ const PLANE = 0.655;
 /**
  * Mean distance between neighbours, from the area that the points cover: the share of a coarse grid's cells that
  * hold a point, each standing for the piece of surface that crosses it.
- * @param {Float32Array} positions in the viewer's frame
+ * @param {Float32Array} positions in the frame
  */
 export function typicalSpacing(positions) {
   const cells = 64;
@@ -34,8 +34,8 @@ const AXES = [
 /**
  * About how far apart neighbours are, at each point: points are spread over the corners of a grid and read back, both
  * with tent weights, which smooths over two cells. One pass each, whatever the number of points.
- * @param {Float32Array} positions in the viewer's frame
- * @returns {Float32Array} distances in the viewer's frame
+ * @param {Float32Array} positions in the frame
+ * @returns {Float32Array} distances in the frame
  */
 export function localSpacing(positions) {
   const wanted = 1 / (SPACINGS_A_CELL * typicalSpacing(positions));

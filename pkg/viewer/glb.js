@@ -2,7 +2,7 @@
 import { Box3, BufferGeometry, Group, Mesh, Points, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { PointweaveError } from '../engine/errors.js';
-import { frameBetween } from './frame.js';
+import { frameBetween, joined } from './frame.js';
 import { diameter } from './layers.js';
 import { meshMaterial, pointMaterial } from './materials.js';
 
@@ -12,8 +12,17 @@ const MESHOPT = 'EXT_meshopt_compression';
 const JSON_CHUNK = 0x4e4f534a;
 
 /**
+ * A GLB that can be shown: its scene in the frame, its objects by layer, and a few of its vertices.
+ * @typedef {{ scene: Group, layers: Record<string, (Points | Mesh)[]>, outline: Float32Array }} Parts
+ */
+
+/** Enough vertices to know how large something looks. */
+const OUTLINE = 4096;
+
+/**
+ * Reads a GLB for a viewer to show. Rejects with a `PointweaveError` where it cannot be read.
  * @param {Uint8Array<ArrayBuffer>} bytes
- * @returns {Promise<{ scene: Group, points: Points[], meshes: Mesh[] }>} the scene is in the picture's frame
+ * @returns {Promise<import('../viewer.js').Model & Parts>}
  */
 export async function readGlb(bytes) {
   const { extensionsRequired = [], extensionsUsed = [] } = header(bytes);
@@ -26,7 +35,7 @@ export async function readGlb(bytes) {
     const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
     loader.setMeshoptDecoder(MeshoptDecoder);
   }
-  const gltf = await loader.parseAsync(bytes.buffer, '').catch((error) => {
+  const gltf = await loader.parseAsync(bufferOf(bytes), '').catch((error) => {
     throw badFile(error instanceof Error ? error.message : String(error));
   });
   return dressed(gltf.scene);
@@ -61,12 +70,18 @@ function dressed(scene) {
   /** @type {Points[]} */
   const points = [];
   /** @type {Mesh[]} */
-  const meshes = [];
+  const mesh = [];
   scene.traverse((object) => {
     if (object instanceof Points) points.push(dressPoints(object));
-    else if (object instanceof Mesh) meshes.push(dressMesh(object));
+    else if (object instanceof Mesh) mesh.push(dressMesh(object));
   });
-  return { scene: placed, points, meshes };
+  const objects = [...points, ...mesh];
+  return {
+    kind: /** @type {const} */ ('glb'),
+    scene: placed,
+    layers: { ...(points.length && { points }), ...(mesh.length && { mesh }) },
+    outline: joined(objects.map((object) => placedPositions(object, OUTLINE / objects.length))),
+  };
 }
 
 /** @param {Points} points */
@@ -88,8 +103,8 @@ function dressMesh(mesh) {
   return mesh;
 }
 
-/** Where an object's vertices are in the picture's frame, at most so many of them. @param {Mesh | Points} object @param {number} [most] */
-export function placedPositions(object, most = Infinity) {
+/** Where an object's vertices are in the frame, at most so many of them. @param {Mesh | Points} object @param {number} [most] */
+function placedPositions(object, most = Infinity) {
   const position = /** @type {BufferGeometry} */ (object.geometry).getAttribute('position');
   const step = Math.max(1, Math.ceil(position.count / most));
   const out = new Float32Array(3 * Math.ceil(position.count / step));
@@ -99,6 +114,11 @@ export function placedPositions(object, most = Infinity) {
     point.toArray(out, (3 * i) / step);
   }
   return out;
+}
+
+/** Just those bytes: of a larger buffer, a copy. @param {Uint8Array<ArrayBuffer>} bytes */
+function bufferOf({ buffer, byteOffset, byteLength }) {
+  return byteLength === buffer.byteLength ? buffer : buffer.slice(byteOffset, byteOffset + byteLength);
 }
 
 /** @param {string} why */

@@ -1,6 +1,6 @@
 /**
- * The one WebGL renderer of a page. Browsers give a page few contexts, so all elements share this one: it draws a picture in
- * its own hidden canvas, and the element copies it to its own. What an element shows stays while the context is lost.
+ * The one WebGL renderer of a page. Browsers give a page few contexts, so all viewers share this one: it draws a picture in its own
+ * hidden canvas, and copies it to the viewer's. What a viewer shows stays while the context is lost.
  */
 import { WebGLRenderer } from 'three';
 import { PointweaveError } from '../engine/errors.js';
@@ -12,11 +12,16 @@ import { EyeDome } from './eye-dome.js';
  * @property {number} width in device pixels
  * @property {number} height
  * @property {number} ratio device pixels in a CSS pixel
- * @property {boolean} dome whether the depth pass is needed
+ * @property {Side[]} sides from left to right
  * @property {import('three').Scene} scene
  * @property {import('three').PerspectiveCamera} camera
  * @property {CanvasRenderingContext2D} context where it goes
+ * @property {(layer: string) => number} prepare readies scene and camera for a layer; how strong its depth pass is, 0 for none
  * @property {(now: number) => void} frame moves on to the next frame, and has it painted
+ * @property {(lost: boolean) => void} contextChanged the browser has taken WebGL away, or has given it back
+ *
+ * A part of the picture's width, and what is drawn there.
+ * @typedef {{ layer: string, from: number, to: number }} Side
  */
 
 const LOOK = /** @type {const} */ ({ alpha: true, antialias: true, depth: true, stencil: false, premultipliedAlpha: true });
@@ -37,13 +42,22 @@ class Painter {
     this.#renderer.autoClear = false;
     this.#renderer.setPixelRatio(1);
     this.#clear();
-    this.#canvas.addEventListener('webglcontextrestored', () => this.#clear());
+    this.#canvas.addEventListener('webglcontextlost', () => this.#tell(true));
+    this.#canvas.addEventListener('webglcontextrestored', () => {
+      this.#clear();
+      this.#tell(false);
+    });
   }
 
   /** The page's own background shows through. A restored context has forgotten that, and every picture. */
   #clear() {
     this.#renderer.setClearColor(0, 0);
     for (const picture of this.#pictures) this.ask(picture);
+  }
+
+  /** @param {boolean} lost */
+  #tell(lost) {
+    for (const picture of this.#pictures) picture.contextChanged(lost);
   }
 
   /** @param {Picture} picture */
@@ -78,13 +92,16 @@ class Painter {
     if (!width || !height || this.#renderer.getContext().isContextLost()) return;
     this.#grow(width, height);
     this.#renderer.setViewport(0, 0, width, height);
-    this.#renderer.setScissor(0, 0, width, height);
     this.#renderer.setScissorTest(true);
-    if (picture.dome) {
-      this.#eyeDome.render(this.#renderer, scene, camera, picture);
-    } else {
-      this.#renderer.clear();
-      this.#renderer.render(scene, camera);
+    for (const { layer, from, to } of picture.sides) {
+      this.#renderer.setScissor(from, 0, to - from, height);
+      const dome = picture.prepare(layer);
+      if (dome) {
+        this.#eyeDome.render(this.#renderer, scene, camera, picture, dome);
+      } else {
+        this.#renderer.clear();
+        this.#renderer.render(scene, camera);
+      }
     }
     context.globalCompositeOperation = 'copy';
     context.drawImage(this.#canvas, 0, this.#canvas.height - height, width, height, 0, 0, width, height);

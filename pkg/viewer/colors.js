@@ -1,19 +1,17 @@
-/** The layers' colours, as the style sheet says them, whatever way they are written: names, oklch(), light-dark() … */
+/** Colours as style sheets write them: names, `#rgb`, `oklch()`, `light-dark()` and all else that the browser knows. */
+
+/** @import { LayerColors } from '../viewer.js' */
 
 /** Red, green and blue of sRGB, 0 to 1. @typedef {[number, number, number]} Rgb */
-/** @typedef {{ mesh: Rgb, points: Rgb, reduced: Rgb }} Colors */
+
+/** For layers without colours of their own, on light and on dark backgrounds. @type {LayerColors} */
+export const COLORS = { points: '#5d7f93', reduced: '#0f8c84', mesh: '#f1e7d8', edges: '#14303a', boxes: '#b07d1e' };
 
 /** @type {CanvasRenderingContext2D | undefined} */
 let pixel;
 
-/** Of the canvas, which carries them as colours that it has no use for itself (sheet.js). @param {HTMLCanvasElement} canvas @returns {Colors} */
-export function layerColors(canvas) {
-  const { color, caretColor, columnRuleColor } = getComputedStyle(canvas);
-  return { mesh: rgb(color), points: rgb(caretColor), reduced: rgb(columnRuleColor) };
-}
-
 /** Paints one pixel and looks at it. @param {string} color @returns {Rgb} */
-function rgb(color) {
+export function rgb(color) {
   if (!pixel) {
     const canvas = document.createElement('canvas');
     canvas.width = canvas.height = 1;
