@@ -6,6 +6,8 @@
  * Positions go in and come out in the caller's own frame and unit.
  */
 
+import type { ReconstructOptions, ReduceOptions } from './types.options.js';
+
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
 export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z x y z … `Float64Array` keeps georeferenced clouds exact. Results have the type of the input. */
@@ -61,122 +63,7 @@ export interface CallOptions {
   transfer?: boolean;
 }
 
-/** How much a reduction keeps: exactly one of them. */
-export type Target =
-  /** Share of the points, (0, 1]. The count of the result is exact. */
-  | { ratio: number }
-  /** Exactly this many points. */
-  | { count: number }
-  /**
-   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes mostly two
-   * to six reductions, at most eleven. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
-   */
-  | { tolerance: number }
-  /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
-  | { flatness: number };
-
-/** How the values of the input points become the value of the reduced point that stands for them. */
-export type Carry =
-  /** Their mean, weighted by membership: for measurements. */
-  | 'mean'
-  /** The value with the largest sum of memberships, of equals the smallest: for labels. A colour is one value. */
-  | 'majority'
-  /** That of the nearest input point. */
-  | 'nearest';
-
-export interface ReduceOptions {
-  /** Default `{ ratio: 1/3 }`. */
-  target?: Target;
-  /** `'paper'` is sections 3.1-3.2 of the paper to the letter; `'adaptive'` (the default) is our best. */
-  method?: 'adaptive' | 'paper';
-  /** m of eq. 1-5, (1, 100]. Default 1.5 (`'adaptive'`), 2 (`'paper'`). */
-  fuzzifier?: number;
-  /**
-   * ε of eq. 6, (0, 1]. `'paper'` stops when no membership changes by more, default 0.001; `'adaptive'` when no
-   * centre moves by more than this share of the wanted spacing, default 0.01.
-   */
-  epsilon?: number;
-  /** At least 1. Default 5 (`'adaptive'`), 100 (`'paper'`). */
-  maxIterations?: number;
-  /** The norm-inducing matrix A of eq. 1, for `'paper'`. Default `'euclidean'`. */
-  norm?: 'euclidean' | 'diagonal' | 'mahalanobis';
-  /** How many clusters a sub-domain gets: in proportion to the target (default), or by eq. 7. */
-  clusters?: 'proportional' | 'validity';
-  /** 0 = even spacing … 1 = strongest concentration on curved regions. Default 0.5. */
-  curvatureWeight?: number;
-  /**
-   * Where a centre goes: `'implicit'` on the surface (default), `'mesh'` best for triangles between the points,
-   * `'center'` the raw centre, `'sample'` the nearest input point.
-   */
-  placement?: 'implicit' | 'mesh' | 'center' | 'sample';
-  /** Of the random memberships that the paper's method starts from, an integer from 0. Default 0. */
-  seed?: number;
-  /** Most points of a sub-domain, 8 to 65536. Default: follows the target (`'adaptive'`), 256 (`'paper'`). */
-  cellPoints?: number;
-  /** Deepest level of the octree, 1 to 21. Default 21. */
-  maxDepth?: number;
-  /**
-   * How the cloud's attributes are carried to the reduced points and on to a mesh, by name; `colors` names the colours. Default `{}`:
-   * every one is `'mean'`.
-   */
-  attributes?: Record<string, Carry>;
-  /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
-  assignment?: boolean;
-  /** Say where the sub-domains of the octree are ({@link ReducedCloud.cells}). Default `false`. */
-  cells?: boolean;
-  /**
-   * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
-   * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
-   */
-  outliers?: 'keep' | 'drop';
-}
-
-export type Orientation = 'auto' | 'normals' | 'viewpoints' | 'up' | 'outward' | 'inward';
-
-export interface ReconstructOptions {
-  /**
-   * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
-   * {@link ReduceOptions}' defaults.
-   */
-  reduce?: ReduceOptions | false;
-  /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
-  accuracy?: number;
-  /** φ of eq. 9: r³ (`'triharmonic'`, the default), r (`'biharmonic'`), r² log r (`'thin-plate'`, the paper's). */
-  kernel?: 'biharmonic' | 'triharmonic' | 'thin-plate';
-  /** Ridge on the diagonal of eq. 11, from 0; `'auto'` (default) follows the noise that `inspect` estimates. */
-  smoothing?: number | 'auto';
-  /** Infer which side is out (default); `false` takes the cloud's own normals as they are. */
-  orient?: boolean;
-  /**
-   * What decides which side is out. `'auto'` (default): all that is known of the cloud, each as far as it holds when it is checked
-   * (its normals, its `viewpoints`, that it was seen from above or by a depth camera at 0 0 0), then closed shapes look outward and
-   * sheets up. `'normals'` and `'viewpoints'`: the cloud's own, unchecked, else the error `bad-option`. `'up'`: sheets and hulls look
-   * along the cloud's `up`, z without it. `'outward'` and `'inward'`: objects and rooms. `report.orientation` says what did decide.
-   */
-  orientation?: Orientation;
-  /** Turn the result to its other side. Default `false`. */
-  flip?: boolean;
-  /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
-  propagation?: 'global' | 'paper';
-  /**
-   * Edge length of the extraction grid, a fraction, 1e-4 to 0.25: the mesh is as dense everywhere. `'auto'` (default)
-   * follows the spacing and has at most three triangles for each fitted point, more where the surface is curved.
-   */
-  resolution?: number | 'auto';
-  /** Keep creases in the mesh. Default `true`. */
-  sharp?: boolean;
-  /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
-  boundary?: 'auto' | 'closed' | 'open';
-  /** Say of every input point and every vertex how far scan and mesh are apart there ({@link SurfaceMesh.distances}). Default `false`. */
-  distances?: boolean;
-  /**
-   * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
-   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
-   * bytes a point until a call without it or another cloud. An abort keeps what was done before it where memory can be shared,
-   * and forgets all elsewhere. Default `false`.
-   */
-  keep?: boolean;
-}
+export * from './types.options.js';
 
 /** Distances as fractions. */
 export interface Distances {
