@@ -1,5 +1,6 @@
 //! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
 
+pub(crate) mod copies;
 pub mod neighborhood;
 pub mod octree;
 mod viewpoints;
