@@ -90,7 +90,11 @@ export type DoubtCode =
   /** A region looks away from where it was seen from. */
   | 'contradicts-sensor'
   /** A large part hangs on little, and may be the wrong way round. */
-  | 'weak-tie';
+  | 'weak-tie'
+  /** The mesh is not close to the points: too few of them, or some lie far from the rest. */
+  | 'far-from-points'
+  /** x and y look like degrees and z like metres. */
+  | 'degrees-as-lengths';
 
 /** What ran, where and for how long. */
 export interface RunReport {
