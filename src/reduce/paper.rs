@@ -24,7 +24,7 @@ use crate::base::power::Fuzzifier;
 use crate::base::progress::{Progress, Stage};
 use crate::cloud::octree::{Neighbor, Octree};
 use crate::features::Features;
-use crate::reduce::Clustering;
+use crate::reduce::clustering::Clustering;
 use crate::reduce::clusters::Shares;
 use crate::reduce::density;
 use crate::reduce::fcm::{Fcm, FcmParams, Start};
