@@ -1,6 +1,6 @@
 //! What the clustering methods hand on.
 
-use crate::reduce::clusters::Shares;
+use crate::reduce::shares::Shares;
 use glam::Vec3;
 use std::ops::Range;
 

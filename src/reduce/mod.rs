@@ -4,10 +4,12 @@ pub(crate) mod borders;
 pub mod clustering;
 pub mod clusters;
 pub mod density;
+pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
 pub mod paper;
 pub mod placement;
+pub mod shares;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
 
@@ -24,10 +26,11 @@ use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::reduce::clustering::Clustering;
-use crate::reduce::clusters::{SHARES, Samples, Settling, Shares};
+use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::placement::{Members, Placed};
+use crate::reduce::shares::{SHARES, Shares};
 use crate::reduce::surroundings::Around;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
