@@ -15,6 +15,7 @@
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
+mod faces;
 #[cfg(feature = "files")]
 mod glb;
 mod input;
@@ -30,6 +31,7 @@ mod off;
 mod pcd;
 #[cfg(feature = "files")]
 mod ply;
+mod pictures;
 mod reading;
 #[cfg(feature = "files")]
 mod stl;
@@ -43,6 +45,8 @@ use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Cloud};
 use crate::pipeline::Surface;
 pub use detect::detect;
+pub use faces::{FaceMode, Picture, Sampling, Want};
+pub use pictures::decode as decode_picture;
 pub use reading::{Reading, Summary};
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
@@ -178,8 +182,10 @@ pub struct RawCloud {
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
-    /// Faces that the file says it has; they are not read.
+    /// Faces that the file says it has.
     pub faces: u64,
+    /// What was made of them.
+    pub sampling: Sampling,
 }
 
 impl RawCloud {
@@ -194,6 +200,7 @@ impl RawCloud {
             dropped: 0,
             replaced: 0,
             faces: 0,
+            sampling: Sampling::default(),
         }
     }
 
@@ -285,10 +292,29 @@ impl RawCloud {
     }
 }
 
-/// Reads a file that is wholly in memory.
+/// Reads a file that is wholly in memory; of a file with faces its vertices.
 ///
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    Reading::new(Some(format), None, bytes.len() as u64).whole(bytes)
+    reading(bytes, format)
+        .with_faces(FaceMode::Vertices)
+        .whole(bytes, &mut |_| None)
+}
+
+/// Reads a file that is wholly in memory; of a file with faces points taken from them ([`FaceMode::Sample`]). `beside` gives the
+/// content of files that the faces name: the material library and the pictures of an OBJ file.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_sampled(
+    bytes: &[u8],
+    format: Format,
+    beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<RawCloud> {
+    reading(bytes, format).whole(bytes, beside)
+}
+
+fn reading(bytes: &[u8], format: Format) -> Reading {
+    Reading::new(Some(format), None, bytes.len() as u64)
 }

@@ -1,5 +1,6 @@
 //! A file read slice by slice.
 
+use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::input::{Input, Place};
 use super::table::{Block, Table, Verdict};
 use super::{Format, Positions, RawCloud, detect};
@@ -20,6 +21,16 @@ pub(super) trait Parser {
     fn faces(&self) -> u64 {
         0
     }
+
+    /// Whether points may come from faces: those that are there are vertices then, and no points yet.
+    fn waits_for_faces(&self) -> bool {
+        false
+    }
+
+    /// The faces over the rows of the table, once all was parsed and where they are wanted.
+    fn take_faces(&mut self) -> Option<Faces> {
+        None
+    }
 }
 
 /// How far a parser is.
@@ -37,6 +48,10 @@ pub struct Reading {
     format: Option<Format>,
     name: Option<String>,
     size: u64,
+    mode: FaceMode,
+    /// Faces that wait for what they need besides.
+    faces: Option<Faces>,
+    sampled: Sampling,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
     /// What the parser has not taken yet, and where it starts.
@@ -46,7 +61,7 @@ pub struct Reading {
 }
 
 /// What is known at the end of a file.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// The format that was read.
     pub format: Format,
@@ -60,6 +75,8 @@ pub struct Summary {
     pub replaced: usize,
     /// As in [`RawCloud`].
     pub faces: u64,
+    /// What was made of them.
+    pub sampling: Sampling,
 }
 
 impl Reading {
@@ -69,12 +86,21 @@ impl Reading {
             format,
             name: name.map(String::from),
             size,
+            mode: FaceMode::default(),
+            faces: None,
+            sampled: Sampling::default(),
             parser: None,
             table: None,
             kept: Vec::new(),
             place: Place::default(),
             done: false,
         }
+    }
+
+    /// Says what becomes of faces; before the first bytes.
+    pub fn with_faces(mut self, mode: FaceMode) -> Reading {
+        self.mode = mode;
+        self
     }
 
     /// The next bytes.
@@ -94,7 +120,7 @@ impl Reading {
         self.parse_kept(false)
     }
 
-    /// After the last bytes: goes on, and says whether all is read.
+    /// After the last bytes: goes on, and says whether all is read. Where it is not, [`Reading::want`] may say what is needed.
     ///
     /// # Errors
     /// The same.
@@ -102,11 +128,55 @@ impl Reading {
         if !self.done {
             self.parse_kept(true)?;
         }
-        Ok(self.done)
+        if self.done && self.want().is_none() {
+            self.sample();
+        }
+        Ok(self.done && self.faces.is_none())
+    }
+
+    /// What the faces need besides the file, one after the other; [`Reading::give_file`] or [`Reading::give_picture`] answers.
+    pub fn want(&self) -> Option<Want> {
+        self.faces.as_ref().and_then(Faces::want)
+    }
+
+    /// The content of the file that is wanted; `None` where there is none: what it would have said is then left out.
+    pub fn give_file(&mut self, content: Option<&[u8]>) {
+        if let Some(faces) = &mut self.faces {
+            faces.give_file(content);
+        }
+    }
+
+    /// The pixels of the picture that is wanted; `None` where it is of no kind that is read.
+    pub fn give_picture(&mut self, picture: Option<Picture>) {
+        if let Some(faces) = &mut self.faces {
+            faces.give_picture(picture);
+        }
+    }
+
+    /// Puts points of the faces in the place of the vertices.
+    fn sample(&mut self) {
+        let Some(faces) = self.faces.take() else {
+            return;
+        };
+        let Some(mut vertices) = self.table.take() else {
+            return;
+        };
+        let gone = vertices.gone.take().unwrap_or_default();
+        let (dropped, replaced) = (vertices.dropped, vertices.replaced);
+        let cloud = vertices.finish();
+        let (table, sampled) = faces::sample(faces, &cloud, &gone);
+        let mut table = table.unwrap_or_else(|| Table::of(cloud));
+        (table.dropped, table.replaced) = (dropped, replaced);
+        self.sampled = sampled;
+        self.table = Some(table);
     }
 
     /// The points since the last call, and how many there can be in all, where that is known.
     pub fn take_block(&mut self) -> Option<(Block, Option<u64>)> {
+        let waits = |parser: &dyn Parser| parser.waits_for_faces();
+        if self.faces.is_some() || self.parser.as_deref().is_some_and(waits) {
+            return None;
+        }
         let table = self.table.as_mut()?;
         Some((table.take_block(), table.most_rows))
     }
@@ -125,21 +195,34 @@ impl Reading {
             points: table.map_or(0, |table| table.rows),
             verdict: table.map_or(none, Table::verdict),
             dropped: table.map_or(0, |table| table.dropped),
-            replaced: table.map_or(0, Table::replaced),
+            replaced: table.map_or(0, |table| table.replaced),
             faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
+            sampling: self.sampled.clone(),
         }
     }
 
-    /// Reads a file that is all there, without a copy of it.
-    pub(super) fn whole(mut self, bytes: &[u8]) -> Result<RawCloud> {
+    /// Reads a file that is all there, without a copy of it; `beside` gives the files that its faces name.
+    pub(super) fn whole(
+        mut self,
+        bytes: &[u8],
+        beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+    ) -> Result<RawCloud> {
         let mut taken = 0;
         while !self.done {
             taken += self.parse(&bytes[taken..], true)?;
         }
+        while let Some(want) = self.want() {
+            match want {
+                Want::File(name) => self.give_file(beside(&name).as_deref()),
+                Want::Picture(bytes) => self.give_picture(super::pictures::decode(&bytes)),
+            }
+        }
+        self.sample();
         let faces = self.summary().faces;
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
         let mut cloud = self.table.map_or_else(empty, Table::finish);
         cloud.faces = faces;
+        cloud.sampling = self.sampled;
         Ok(cloud)
     }
 
@@ -173,10 +256,13 @@ impl Reading {
         };
         let parser = match &mut self.parser {
             Some(parser) => parser,
-            None => self.parser.insert(parser(format)?),
+            None => self.parser.insert(parser(format, self.mode)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
+        if self.done {
+            self.faces = parser.take_faces().filter(|faces| !faces.corners.is_empty());
+        }
         self.place = input.place;
         Ok(if self.done {
             bytes.len()
@@ -195,22 +281,23 @@ impl Reading {
     }
 }
 
-fn parser(format: Format) -> Result<Box<dyn Parser>> {
+fn parser(format: Format, mode: FaceMode) -> Result<Box<dyn Parser>> {
+    let faces = || (mode == FaceMode::Sample).then(Faces::default);
     Ok(match format {
         #[cfg(feature = "files")]
-        Format::Ply => Box::new(ply::Ply::default()),
+        Format::Ply => Box::new(ply::Ply::new(faces())),
         #[cfg(feature = "files")]
         Format::Xyz => Box::new(xyz::Xyz::default()),
         #[cfg(feature = "files")]
         Format::Pcd => Box::new(pcd::Pcd::default()),
         #[cfg(feature = "files")]
-        Format::Obj => Box::new(obj::Obj::default()),
+        Format::Obj => Box::new(obj::Obj::new(faces())),
         #[cfg(feature = "files")]
-        Format::Off => Box::new(off::Off::default()),
+        Format::Off => Box::new(off::Off::new(faces())),
         #[cfg(feature = "files")]
-        Format::Stl => Box::new(stl::Stl::default()),
+        Format::Stl => Box::new(stl::Stl::new(faces())),
         #[cfg(feature = "files")]
-        Format::Glb => Box::new(glb::Glb::default()),
+        Format::Glb => Box::new(glb::Glb::new(faces())),
         #[cfg(feature = "las")]
         Format::Las => Box::new(super::las::Las::default()),
         #[cfg(feature = "e57")]

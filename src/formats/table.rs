@@ -141,7 +141,9 @@ pub(super) struct Table {
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
     pub(super) dropped: usize,
-    replaced: usize,
+    /// Which rows were left out, counted with all others, where faces ask for it.
+    pub(super) gone: Option<Vec<u32>>,
+    pub(super) replaced: usize,
 }
 
 impl Table {
@@ -159,14 +161,57 @@ impl Table {
             colors_said: true,
             normals_said: true,
             dropped: 0,
+            gone: None,
             replaced: 0,
         }
+    }
+
+    /// A table of a cloud's points.
+    pub(super) fn of(cloud: RawCloud) -> Table {
+        let attributes = cloud.attributes.iter().enumerate();
+        let columns = Columns {
+            position: [0, 1, 2],
+            normal: cloud.normals.as_ref().map(|_| [3, 4, 5]),
+            color: cloud.colors.as_ref().map(|_| [6, 7, 8]),
+            scalars: attributes.map(|(i, a)| (9 + i, a.name.clone())).collect(),
+            colors: ColorRange::Bytes,
+            precision: match cloud.positions {
+                Positions::F32(_) => Precision::Single,
+                Positions::F64(_) => Precision::Double,
+            },
+        };
+        let rows = cloud.points() as u64;
+        let mut table = Table::new(columns, Some(rows));
+        table.rows = rows;
+        table.block = Block {
+            positions: cloud.positions,
+            normals: cloud.normals,
+            colors: cloud.colors.map(ColorValues::Bytes),
+            attributes: cloud.attributes,
+        };
+        table
+    }
+
+    /// Rows so far, with those that were left out.
+    pub(super) fn next_row(&self) -> u64 {
+        self.rows + self.dropped as u64
+    }
+
+    /// The coordinates of a row, where none was left out and no block was taken.
+    pub(super) fn position(&self, row: u32) -> Option<[f64; 3]> {
+        let row = row as usize;
+        let is_there = self.dropped == 0 && row < self.block.positions.len() / 3;
+        is_there.then(|| [0, 1, 2].map(|axis| self.block.positions.get(3 * row + axis)))
     }
 
     /// Adds a row; one with a coordinate that is not finite is counted and left out.
     pub(super) fn push(&mut self, row: &[f64]) {
         let position = self.columns.position.map(|column| row[column]);
         if position.iter().any(|x| !x.is_finite()) {
+            let row = self.next_row();
+            if let Some(gone) = &mut self.gone {
+                gone.push(row as u32);
+            }
             self.dropped += 1;
             return;
         }
@@ -239,11 +284,6 @@ impl Table {
             has_colors: self.colors_said,
             has_normals: self.normals_said,
         }
-    }
-
-    /// Values of colours, normals and attributes that were not finite and are now 0.
-    pub(super) fn replaced(&self) -> usize {
-        self.replaced
     }
 
     /// The arrays of all rows, where no block was taken.
