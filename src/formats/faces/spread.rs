@@ -106,33 +106,35 @@ fn lay_out(areas: &[f64], total: f64, count: usize) -> Vec<Sample> {
 
 /// Which candidates are accepted; `places` are in units of the densest packing's distance.
 fn throw(candidates: &[Sample], places: &[[f32; 3]], normals: &[[f32; 3]], wanted: usize) -> Vec<bool> {
-    let mut accepted = vec![false; candidates.len()];
     let mut waiting: Vec<u32> = (0..candidates.len() as u32).collect();
     let mut rng = Rng::new(SEED + 1);
     for i in (1..waiting.len()).rev() {
         waiting.swap(i, (rng.next_u64() % (i as u64 + 1)) as usize);
     }
-    let mut grid = Grid::new(wanted, 2.0 * RADII[0] as f32);
+    let grid = Grid::of(places);
+    let normal = |i: u32| normals[candidates[i as usize].triangle as usize];
+    // Squared distance to the nearest accepted point of the same side, where it is within the first radius.
+    let mut nearest = vec![f32::INFINITY; candidates.len()];
+    let mut accepted = vec![false; candidates.len()];
     let mut left = wanted.min(candidates.len());
     for radius in RADII {
         let squared = (radius * radius) as f32;
         waiting.retain(|&i| {
-            if left == 0 {
+            if left == 0 || nearest[i as usize] < squared {
                 return true;
             }
-            let place = places[i as usize];
-            let normal = normals[candidates[i as usize].triangle as usize];
-            let close = |&other: &u32| {
+            let (place, side) = (places[i as usize], normal(i));
+            grid.near(place, |other| {
                 let p = places[other as usize];
                 let d = [p[0] - place[0], p[1] - place[1], p[2] - place[2]];
-                let n = normals[candidates[other as usize].triangle as usize];
-                d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < squared
-                    && n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] >= OTHER_SIDE
-            };
-            if radius > 0.0 && grid.any_near(place, radius as f32, close) {
-                return true;
-            }
-            grid.add(place, i);
+                let distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                if distance < nearest[other as usize] {
+                    let n = normal(other);
+                    if n[0] * side[0] + n[1] * side[1] + n[2] * side[2] >= OTHER_SIDE {
+                        nearest[other as usize] = distance;
+                    }
+                }
+            });
             accepted[i as usize] = true;
             left -= 1;
             false
@@ -141,67 +143,60 @@ fn throw(candidates: &[Sample], places: &[[f32; 3]], normals: &[[f32; 3]], wante
     accepted
 }
 
-/// Points by cubic cell, hashed.
+/// Candidates by cubic cell. Cells are hashed to lists: one may hold those of other cells, too, which are too far to matter.
 struct Grid {
-    side: f32,
-    /// Cell and its point added last, at the place that the cell's hash says or after it; a power of two of them.
-    slots: Vec<([i64; 3], u32)>,
-    /// The point, and the one added to its cell before.
-    points: Vec<(u32, u32)>,
+    /// The candidates of list `l` are `members[starts[l]..starts[l + 1]]`.
+    starts: Vec<u32>,
+    members: Vec<u32>,
 }
 
-const FREE: u32 = u32::MAX;
+/// The first radius, so that what is near lies in eight cells at most.
+const CELL: f32 = 2.0 * RADII[0] as f32;
+/// No list is looked at farther: of a surface a cell holds some tens of candidates, more only where single precision fails.
+const MOST_MEMBERS: usize = 1024;
 
 impl Grid {
-    fn new(points: usize, side: f32) -> Grid {
-        Grid {
-            side,
-            slots: vec![([0; 3], FREE); (2 * points).next_power_of_two()],
-            points: Vec::with_capacity(points),
+    fn of(places: &[[f32; 3]]) -> Grid {
+        let lists = places.len().next_power_of_two();
+        let list_of: Vec<u32> = places.iter().map(|&place| list(cell(place), lists) as u32).collect();
+        let mut starts = vec![0u32; lists + 1];
+        list_of.iter().for_each(|&l| starts[l as usize + 1] += 1);
+        for l in 1..starts.len() {
+            starts[l] += starts[l - 1];
         }
-    }
-
-    fn cell(&self, place: [f32; 3]) -> [i64; 3] {
-        place.map(|x| (x / self.side).floor() as i64)
-    }
-
-    /// Where the cell is, or would be.
-    fn slot(&self, cell: [i64; 3]) -> usize {
-        let hash = cell.iter().fold(0u64, |hash, &x| {
-            (hash ^ x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
-        });
-        let mask = self.slots.len() - 1;
-        let mut at = hash as usize & mask;
-        while self.slots[at].1 != FREE && self.slots[at].0 != cell {
-            at = (at + 1) & mask;
+        let mut next = starts.clone();
+        let mut members = vec![0; places.len()];
+        for (i, &l) in list_of.iter().enumerate() {
+            members[next[l as usize] as usize] = i as u32;
+            next[l as usize] += 1;
         }
-        at
+        Grid { starts, members }
     }
 
-    fn add(&mut self, place: [f32; 3], point: u32) {
-        let cell = self.cell(place);
-        let at = self.slot(cell);
-        self.points.push((point, self.slots[at].1));
-        self.slots[at] = (cell, self.points.len() as u32 - 1);
-    }
-
-    fn any_near(&self, place: [f32; 3], radius: f32, close: impl Fn(&u32) -> bool) -> bool {
-        let low = self.cell(place.map(|x| x - radius));
-        let high = self.cell(place.map(|x| x + radius));
+    /// All candidates within the first radius, and some others.
+    fn near(&self, place: [f32; 3], mut each: impl FnMut(u32)) {
+        let low = cell(place.map(|x| x - 0.5 * CELL));
+        let high = cell(place.map(|x| x + 0.5 * CELL));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let mut next = self.slots[self.slot([x, y, z])].1;
-                    while next != FREE {
-                        let (point, before) = self.points[next as usize];
-                        if close(&point) {
-                            return true;
-                        }
-                        next = before;
-                    }
+                    let l = list([x, y, z], self.starts.len() - 1);
+                    let members = &self.members[self.starts[l] as usize..self.starts[l + 1] as usize];
+                    members.iter().take(MOST_MEMBERS).for_each(|&i| each(i));
                 }
             }
         }
-        false
     }
+}
+
+fn cell(place: [f32; 3]) -> [i64; 3] {
+    place.map(|x| (x / CELL).floor() as i64)
+}
+
+/// The list of a cell, of a power of two.
+fn list(cell: [i64; 3], lists: usize) -> usize {
+    let hash = cell.iter().fold(0u64, |hash, &x| {
+        (hash ^ x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
+    });
+    hash as usize & (lists - 1)
 }
