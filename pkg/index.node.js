@@ -4,4 +4,5 @@ import { platform } from './engine/platform.node.js';
 
 export { PointweaveError } from './engine/errors.js';
 export { DEFAULTS } from './engine/options.js';
+export { sideInWords } from './engine/side.js';
 export const { createEngine, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);

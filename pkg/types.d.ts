@@ -12,12 +12,29 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   positions: Positions;
   /** r g b r g b …, 0-255. */
   colors?: Uint8Array;
-  /** Unit vectors x y z …; their directions are taken for the surface's, their signs too where `orient` is false. */
+  /**
+   * Unit vectors x y z …; their directions are taken for the surface's, and their signs as far as they agree with each other, all of
+   * them where `orient` is false. Zero, NaN and infinite ones are none.
+   */
   normals?: Float32Array;
   /** One value a point: intensity, classification, time … */
   attributes?: Record<string, Float32Array>;
   /** Added to the positions to give world coordinates; carried to every result. */
   origin?: [number, number, number];
+  /** Where the points were seen from; carried to every reduced cloud. */
+  viewpoints?: Viewpoints;
+  /** Which way is up, in the positions' frame, of any length but 0; carried to every result as a unit vector. */
+  up?: [number, number, number];
+  /** All was seen from high above, along `up` (z without it), as airborne scans are; carried to every reduced cloud. */
+  seenFromAbove?: boolean;
+}
+
+/** Places of a scanner or camera. */
+export interface Viewpoints {
+  /** x y z of each, in the frame and unit of the cloud's positions; at least one. */
+  positions: Float64Array;
+  /** For each point the index of the place that it was seen from, or 0xffffffff where that is not known. Default: the first saw all. */
+  of?: Uint32Array;
 }
 
 /** The steps of a call, in the order in which they run. */
@@ -114,6 +131,8 @@ export interface ReduceOptions {
   outliers?: 'keep' | 'drop';
 }
 
+export type Orientation = 'auto' | 'normals' | 'viewpoints' | 'up' | 'outward' | 'inward';
+
 export interface ReconstructOptions {
   /**
    * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
@@ -128,6 +147,15 @@ export interface ReconstructOptions {
   smoothing?: number | 'auto';
   /** Infer which side is out (default); `false` takes the cloud's own normals as they are. */
   orient?: boolean;
+  /**
+   * What decides which side is out. `'auto'` (default): all that is known of the cloud, each as far as it holds when it is checked
+   * (its normals, its `viewpoints`, that it was seen from above or by a depth camera at 0 0 0), then closed shapes look outward and
+   * sheets up. `'normals'` and `'viewpoints'`: the cloud's own, unchecked, else the error `bad-option`. `'up'`: sheets and hulls look
+   * along the cloud's `up`, z without it. `'outward'` and `'inward'`: objects and rooms. `report.orientation` says what did decide.
+   */
+  orientation?: Orientation;
+  /** Turn the result to its other side. Default `false`. */
+  flip?: boolean;
   /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
   propagation?: 'global' | 'paper';
   /**
@@ -157,6 +185,26 @@ export interface Distances {
   max: number;
 }
 
+/** Something about a result that may not be as it should. */
+export interface Doubt {
+  /** Stable and meant for programs: {@link DoubtCode}, and more with time. */
+  code: DoubtCode | (string & {});
+  /** A sentence. */
+  message: string;
+  /** The share of the surface that it is about, 0 to 1, where that is known. */
+  share?: number;
+}
+
+export type DoubtCode =
+  /** Nothing says which side is out. */
+  | 'side-guessed'
+  /** Two things that are known of the cloud say different sides. */
+  | 'sources-disagree'
+  /** A region looks away from where it was seen from. */
+  | 'contradicts-sensor'
+  /** A large part hangs on little, and may be the wrong way round. */
+  | 'weak-tie';
+
 /** What ran, where and for how long. */
 export interface RunReport {
   /** Milliseconds by stage. */
@@ -168,6 +216,8 @@ export interface RunReport {
   threads: number;
   /** Why this build ran, and why something was not done as it was asked for. */
   reason: string;
+  /** What may not be as it should; empty for what is clear. */
+  doubts: Doubt[];
 }
 
 export interface ReduceReport extends RunReport {
@@ -231,7 +281,45 @@ export interface SurfaceReport extends ReduceReport {
   orientationEnergy: number;
   /** The same before conflicts were solved over the whole graph. */
   orientationEnergyBefore: number;
+  /** What decided which side is out. */
+  orientation: OrientationReport;
 }
+
+/** What decided which side is out. Shares are of the surface, 0 to 1. */
+export interface OrientationReport {
+  /** Every source that said anything, and how far the result agrees with it; the shares add up to 1. */
+  sources: {
+    source: OrientationSource;
+    /** Of what it decided. */
+    share: number;
+    /** Of that about which it says anything, the share where the result agrees. */
+    agreement: number;
+  }[];
+  /** Share whose side is a guess. */
+  guessed: number;
+  /** The part with over 1 % of the surface that hangs on the least. */
+  weakestTie?: {
+    /** Share that would turn. */
+    share: number;
+    /** What holds it: neighbouring sub-domains of one sheet have about 0.5. */
+    strength: number;
+  };
+}
+
+export type OrientationSource =
+  /** The cloud's own normals. */
+  | 'normals'
+  | 'viewpoints'
+  /** That it was seen from above. */
+  | 'above'
+  /** That it looks as a depth camera at 0 0 0 sees. */
+  | 'camera'
+  /** That it encloses something. */
+  | 'shell'
+  /** The option, or the rule for sheets, that up is out. */
+  | 'up'
+  /** Nothing. */
+  | 'guess';
 
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z of each vertex. */
@@ -243,6 +331,7 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   colors?: Uint8Array;
   attributes?: Record<string, Float32Array>;
   origin?: [number, number, number];
+  up?: [number, number, number];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -405,6 +494,9 @@ export const sample: Engine['sample'];
 
 /** Resolves when the engine is ready to compute. */
 export function createEngine(options?: EngineOptions): Promise<Engine>;
+
+/** What told which side is out, for people: `report.orientation` as part of a sentence. */
+export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
 
 /** What is taken for each option that is not given; `undefined` where that follows from other options. */
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };

@@ -1,4 +1,5 @@
 /** What `--help` prints. The flags come from the tables of options; only the words for each are here. */
+import { CLOUD_ROWS } from './cloud-flags.js';
 import { FORMATS } from './formats.js';
 import { flagsOf } from './flags.js';
 
@@ -28,6 +29,8 @@ export const WORDS = {
   kernel: 'of the radial basis functions',
   smoothing: 'of the fit; auto follows the measured noise',
   orient: "infer which side is out: the file's normals say it",
+  orientation: 'what says which side is out; auto takes all that is known',
+  flip: 'turn the result to its other side',
   propagation: 'how orientation spreads',
   resolution: 'edge length of the mesh, a share of the diagonal',
   sharp: 'keep creases',
@@ -83,7 +86,8 @@ export function help(command) {
   const flags = flagsOf(command);
   const output = command === 'inspect' ? '' : ` -o result.${command === 'reduce' ? 'ply' : 'glb'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
-  const listed = [...sections, ['General', [...(command === 'inspect' ? [] : OUTPUT), ...COMMON]]];
+  const works = command !== 'inspect';
+  const listed = [...sections, ['Scan', works ? CLOUD_ROWS : []], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   return `pointweave ${command}: ${DOES[command]}
 

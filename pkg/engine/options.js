@@ -89,6 +89,8 @@ const RECONSTRUCT = {
   kernel: choice('triharmonic', 'biharmonic', 'thin-plate'),
   smoothing: number(0, 1e6, { or: 'auto', fallback: 'auto' }),
   orient: flag(true),
+  orientation: choice('auto', 'normals', 'viewpoints', 'up', 'outward', 'inward'),
+  flip: flag(false),
   propagation: choice('global', 'paper'),
   resolution: number(1e-4, 0.25, { or: 'auto', fallback: 'auto' }),
   sharp: flag(true),

@@ -3,7 +3,7 @@
 use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::input::{Input, Place};
 use super::table::{Block, Table, Verdict};
-use super::{Format, Positions, RawCloud, detect};
+use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
 use crate::base::error::Result;
@@ -77,6 +77,12 @@ pub struct Summary {
     pub faces: u64,
     /// What was made of them.
     pub sampling: Sampling,
+    /// Where the points were seen from.
+    pub stations: Stations,
+    /// As in [`RawCloud`].
+    pub up: Option<[f64; 3]>,
+    /// As in [`RawCloud`].
+    pub seen_from_above: bool,
 }
 
 impl Reading {
@@ -190,14 +196,18 @@ impl Reading {
             has_normals: false,
         };
         let table = self.table.as_ref();
+        let format = self.format.unwrap_or(Format::Xyz);
         Summary {
-            format: self.format.unwrap_or(Format::Xyz),
+            format,
             points: table.map_or(0, |table| table.rows),
             verdict: table.map_or(none, Table::verdict),
             dropped: table.map_or(0, |table| table.dropped),
             replaced: table.map_or(0, |table| table.replaced),
             faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
             sampling: self.sampled.clone(),
+            stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
+            up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
+            seen_from_above: format.is_airborne(),
         }
     }
 
@@ -218,10 +228,17 @@ impl Reading {
             }
         }
         self.sample();
-        let faces = self.summary().faces;
+        let Summary {
+            faces,
+            up,
+            seen_from_above,
+            ..
+        } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
         let mut cloud = self.table.map_or_else(empty, Table::finish);
         cloud.faces = faces;
+        cloud.up = up;
+        cloud.seen_from_above = seen_from_above;
         cloud.sampling = self.sampled;
         Ok(cloud)
     }

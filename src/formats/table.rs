@@ -1,6 +1,6 @@
 //! Rows of named numbers become the arrays of a [`RawCloud`], all at once or block by block.
 
-use super::{Positions, RawCloud};
+use super::{Positions, RawCloud, Stations};
 use crate::cloud::Attribute;
 
 /// Which columns of a row hold what.
@@ -140,6 +140,7 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    pub(super) stations: Stations,
     pub(super) dropped: usize,
     /// Which rows were left out, counted with all others, where faces ask for it.
     pub(super) gone: Option<Vec<u32>>,
@@ -160,6 +161,7 @@ impl Table {
             brightest: 0.0,
             colors_said: true,
             normals_said: true,
+            stations: Stations::default(),
             dropped: 0,
             gone: None,
             replaced: 0,
@@ -261,6 +263,11 @@ impl Table {
         self.block.normals.get_or_insert_default().extend(normal);
     }
 
+    /// The rows from here on were seen from `position`; `None` where the file does not tell.
+    pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
+        self.stations.begin(self.rows, position);
+    }
+
     /// The rows since the last block.
     pub(super) fn take_block(&mut self) -> Block {
         std::mem::replace(&mut self.block, self.columns.empty_block())
@@ -314,6 +321,7 @@ impl Table {
                     .collect(),
             });
         cloud.attributes = attributes;
+        cloud.viewpoints = self.stations.viewpoints(cloud.points());
         cloud.dropped = self.dropped;
         cloud.replaced = self.replaced;
         cloud

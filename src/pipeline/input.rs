@@ -1,7 +1,7 @@
 //! What the pipeline starts from: the caller's points, or those that are not isolated, with all that is measured of them.
 
-use crate::base::error::Result;
-use crate::base::params::Outliers;
+use crate::base::error::{Error, Result};
+use crate::base::params::{COLORS, Outliers, ReduceParams};
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
@@ -10,6 +10,9 @@ use crate::features::outliers;
 use crate::reduce::Reduced;
 use glam::Vec3;
 use std::borrow::Cow;
+
+/// Cosine of the largest angle between a normal of the cloud and the measured one: 60°.
+const ACROSS: f32 = 0.5;
 
 /// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
 /// as a scanner knows more than neighbours tell.
@@ -21,19 +24,26 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     if let Some(normals) = &cloud.normals {
         for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
             let own = normals[i as usize];
-            *normal = if own == Vec3::ZERO { *normal } else { own };
+            let along = own.dot(*normal);
+            // What stands across the surface is no normal of it; only its sign may be one.
+            if *normal == Vec3::ZERO || along.abs() > ACROSS {
+                *normal = if own == Vec3::ZERO { *normal } else { own };
+            } else if along < 0.0 {
+                *normal = -*normal;
+            }
         }
     }
     Ok((tree, features))
 }
 
-/// What a reduction is made of: the caller's points, or those that are not isolated.
+/// What a job starts from: the caller's points, or those that are not isolated. A job uses up an input that it owns, and
+/// copies what it changes of one that is lent.
 #[derive(Debug)]
 pub(crate) struct Input<'a> {
     /// Without points where nobody else owns them: the tree has them.
     pub(crate) cloud: Cow<'a, Cloud>,
-    pub(crate) tree: Octree,
-    pub(crate) features: Features,
+    pub(crate) tree: Cow<'a, Octree>,
+    pub(crate) features: Cow<'a, Features>,
     pub(crate) origin: Origin,
 }
 
@@ -102,14 +112,24 @@ impl<'a> Input<'a> {
         }
         Input {
             cloud,
-            tree,
-            features,
+            tree: Cow::Owned(tree),
+            features: Cow::Owned(features),
             origin,
         }
     }
 }
 
 impl Input<'_> {
+    /// The same input, for a job that may not use it up.
+    pub(crate) fn lent(&self) -> Input<'_> {
+        Input {
+            cloud: Cow::Borrowed(&self.cloud),
+            tree: Cow::Borrowed(&self.tree),
+            features: Cow::Borrowed(&self.features),
+            origin: self.origin.clone(),
+        }
+    }
+
     /// Whether this was measured of these very points, colours and whatever else there is.
     pub(crate) fn is_of(&self, cloud: &Cloud) -> bool {
         let Cloud {
@@ -119,6 +139,9 @@ impl Input<'_> {
             normals,
             attributes,
             origin,
+            viewpoints,
+            up,
+            seen_from_above,
         } = cloud;
         let (of, tree) = (&self.cloud, &self.tree);
         let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
@@ -127,6 +150,7 @@ impl Input<'_> {
             && (of.frame, of.origin) == (*frame, *origin)
             && tree.points.iter().zip(&tree.order).all(place)
             && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+            && (&of.viewpoints, of.up, of.seen_from_above) == (viewpoints, *up, *seen_from_above)
     }
 }
 
@@ -156,5 +180,29 @@ impl Origin {
             }
             *assignment = all;
         }
+    }
+}
+
+/// Names of `attributes` that the cloud does not have.
+pub(crate) fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
+    let scalars = cloud.attributes.iter().map(|a| a.name.as_str());
+    let names: Vec<&str> = scalars
+        .chain(cloud.colors.as_ref().map(|_| COLORS))
+        .collect();
+    match params
+        .attributes
+        .keys()
+        .find(|key| !names.contains(&key.as_str()))
+    {
+        None => Ok(()),
+        Some(key) => Err(Error::BadOption {
+            option: "attributes".into(),
+            expected: if names.is_empty() {
+                "an empty object, as the cloud has no attributes".into()
+            } else {
+                format!("names of the cloud's attributes: {}", names.join(", "))
+            },
+            found: format!("an object with {key}"),
+        }),
     }
 }
