@@ -8,9 +8,10 @@
 mod accessor;
 mod scene;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use crate::base::error::Result;
 use accessor::Accessor;
 use scene::{Document, Placed};
@@ -48,12 +49,10 @@ impl Parser for Glb {
                     .all(|part| part.primitive.attributes.contains_key(name))
         };
         let columns = Columns {
-            position: [0, 1, 2],
             normal: has("NORMAL").then_some([3, 4, 5]),
             color: has("COLOR_0").then_some([6, 7, 8]),
-            scalars: Vec::new(),
             colors: ColorRange::Unit,
-            precision: Precision::AsNeeded,
+            ..Columns::xyz()
         };
         let table = table.insert(Table::new(columns, None));
         for part in &parts {

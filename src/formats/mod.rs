@@ -12,6 +12,7 @@
     allow(dead_code)
 )]
 
+mod colors;
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
@@ -30,7 +31,10 @@ mod off;
 mod pcd;
 #[cfg(feature = "files")]
 mod ply;
+mod options;
+mod preview;
 mod reading;
+mod sentinels;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -43,7 +47,10 @@ use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Cloud};
 use crate::pipeline::Surface;
 pub use detect::detect;
+pub use options::ReadOptions;
+pub use preview::Preview;
 pub use reading::{Reading, Summary};
+pub use sentinels::LeftOut;
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
@@ -180,6 +187,12 @@ pub struct RawCloud {
     pub replaced: usize,
     /// Faces that the file says it has; they are not read.
     pub faces: u64,
+    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`. The first two are `dropped`.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// What the columns of a table of text were taken for, as [`ReadOptions::columns`] says it.
+    pub columns: Vec<String>,
+    /// What else is to be said of the points, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl RawCloud {
@@ -194,6 +207,9 @@ impl RawCloud {
             dropped: 0,
             replaced: 0,
             faces: 0,
+            skipped: Vec::new(),
+            columns: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -290,5 +306,15 @@ impl RawCloud {
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    Reading::new(Some(format), None, bytes.len() as u64).whole(bytes)
+    read_with(bytes, format, &ReadOptions::default())
+}
+
+/// [`read`], with what the caller says of the file.
+///
+/// # Errors
+/// Those of [`read`], and [`Error::BadOption`].
+pub fn read_with(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<RawCloud> {
+    Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(options.clone())?
+        .whole(bytes)
 }

@@ -10,7 +10,7 @@
 
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;
 
@@ -146,11 +146,7 @@ impl Obj {
 
 fn columns() -> Columns {
     Columns {
-        position: [0, 1, 2],
-        normal: None,
         color: Some([3, 4, 5]),
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
-        precision: Precision::AsNeeded,
+        ..Columns::xyz()
     }
 }

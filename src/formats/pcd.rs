@@ -8,10 +8,11 @@
 //! Why not a crate: `pcd-rs` reads through memory maps or whole records with one allocation each, and gives no place
 //! for an error; `pcd_rs` has no wasm32 build without a file system.
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::lzf;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use super::text::number;
 use crate::base::error::Result;
 

@@ -1,7 +1,10 @@
 //! A file read slice by slice.
 
+use super::Preview;
 use super::input::{Input, Place};
-use super::table::{Block, Table, Verdict};
+use super::options::ReadOptions;
+use super::sentinels::LeftOut;
+use super::table::{Block, Table, Verdict, skipped};
 use super::{Format, Positions, RawCloud, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
@@ -19,6 +22,21 @@ pub(super) trait Parser {
     /// Faces that the file has, once all was parsed.
     fn faces(&self) -> u64 {
         0
+    }
+
+    /// What the columns of a table were taken for.
+    fn columns(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The first rows of a table.
+    fn preview(&self) -> Option<Preview> {
+        None
+    }
+
+    /// What else is to be said of the points.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
     }
 }
 
@@ -43,10 +61,11 @@ pub struct Reading {
     kept: Vec<u8>,
     place: Place,
     done: bool,
+    options: ReadOptions,
 }
 
 /// What is known at the end of a file.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// The format that was read.
     pub format: Format,
@@ -60,6 +79,14 @@ pub struct Summary {
     pub replaced: usize,
     /// As in [`RawCloud`].
     pub faces: u64,
+    /// As in [`RawCloud`], but for what [`Verdict::left_out`] says.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// As in [`RawCloud`].
+    pub columns: Vec<String>,
+    /// As in [`RawCloud`].
+    pub notes: Vec<String>,
+    /// The first rows of a table of text.
+    pub preview: Option<Preview>,
 }
 
 impl Reading {
@@ -74,7 +101,18 @@ impl Reading {
             kept: Vec::new(),
             place: Place::default(),
             done: false,
+            options: ReadOptions::default(),
         }
+    }
+
+    /// With what the caller says of the file.
+    ///
+    /// # Errors
+    /// [`crate::Error::BadOption`].
+    pub fn with_options(mut self, options: ReadOptions) -> Result<Reading> {
+        options.check()?;
+        self.options = options;
+        Ok(self)
     }
 
     /// The next bytes.
@@ -113,20 +151,28 @@ impl Reading {
 
     /// What the end of the file told.
     pub fn summary(&self) -> Summary {
-        let none = Verdict {
+        let none = || Verdict {
             narrow: true,
             color_scale: 1.0,
             has_colors: false,
             has_normals: false,
+            left_out: LeftOut::default(),
+            attributes: Vec::new(),
         };
         let table = self.table.as_ref();
+        let parser = self.parser.as_ref();
+        let keep = self.options.keep_sentinels;
         Summary {
             format: self.format.unwrap_or(Format::Xyz),
             points: table.map_or(0, |table| table.rows),
-            verdict: table.map_or(none, Table::verdict),
-            dropped: table.map_or(0, |table| table.dropped),
+            verdict: table.map_or_else(none, |table| table.verdict(keep)),
+            dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, Table::replaced),
-            faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
+            faces: parser.map_or(0, |parser| parser.faces()),
+            skipped: table.map_or(Vec::new(), |table| skipped(table.dropped, table.invalid)),
+            columns: parser.map_or(Vec::new(), |parser| parser.columns()),
+            notes: parser.map_or(Vec::new(), |parser| parser.notes()),
+            preview: parser.and_then(|parser| parser.preview()),
         }
     }
 
@@ -136,11 +182,21 @@ impl Reading {
         while !self.done {
             taken += self.parse(&bytes[taken..], true)?;
         }
-        let faces = self.summary().faces;
+        let Summary {
+            faces,
+            columns,
+            notes,
+            ..
+        } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
-        let mut cloud = self.table.map_or_else(empty, Table::finish);
-        cloud.faces = faces;
-        Ok(cloud)
+        let keep = self.options.keep_sentinels;
+        let cloud = self.table.map_or_else(empty, |table| table.finish(keep));
+        Ok(RawCloud {
+            faces,
+            columns,
+            notes,
+            ..cloud
+        })
     }
 
     fn keep(&mut self, bytes: &[u8]) {
@@ -173,7 +229,7 @@ impl Reading {
         };
         let parser = match &mut self.parser {
             Some(parser) => parser,
-            None => self.parser.insert(parser(format)?),
+            None => self.parser.insert(parser(format, &self.options)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
@@ -195,12 +251,12 @@ impl Reading {
     }
 }
 
-fn parser(format: Format) -> Result<Box<dyn Parser>> {
+fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
     Ok(match format {
         #[cfg(feature = "files")]
         Format::Ply => Box::new(ply::Ply::default()),
         #[cfg(feature = "files")]
-        Format::Xyz => Box::new(xyz::Xyz::default()),
+        Format::Xyz => Box::new(xyz::Xyz::new(options)),
         #[cfg(feature = "files")]
         Format::Pcd => Box::new(pcd::Pcd::default()),
         #[cfg(feature = "files")]
