@@ -1,7 +1,7 @@
 /** `pointweave/core` in Node. */
-import { makeLoad } from './direct-api.js';
-import { platform } from './platform.node.js';
+import { makeLoad } from './engine/direct-api.js';
+import { platform } from './engine/platform.node.js';
 
-export { PointweaveError } from './errors.js';
-export { DEFAULTS } from './options.js';
+export { PointweaveError } from './engine/errors.js';
+export { DEFAULTS } from './engine/options.js';
 export const load = makeLoad(platform);

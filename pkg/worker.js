@@ -1,5 +1,5 @@
 /** A browser's worker. */
-import { serve } from './serve.js';
+import { serve } from './engine/serve.js';
 
 const scope = /** @type {Worker} */ (/** @type {unknown} */ (globalThis));
 

@@ -1,6 +1,6 @@
 /** A Node worker. */
 import { parentPort } from 'node:worker_threads';
-import { serve } from './serve.js';
+import { serve } from './engine/serve.js';
 
 const port = /** @type {import('node:worker_threads').MessagePort} */ (parentPort);
 

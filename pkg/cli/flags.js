@@ -1,9 +1,9 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
-import { PointweaveError } from '../errors.js';
-import { TABLES, TARGETS } from '../options.js';
+import { PointweaveError } from '../engine/errors.js';
+import { TABLES, TARGETS } from '../engine/options.js';
 import { UsageError } from './usage.js';
 
-/** @import { Rule } from '../options.js' */
+/** @import { Rule } from '../engine/options.js' */
 /** @typedef {'reduce' | 'reconstruct' | 'inspect'} Command */
 
 /**

@@ -1,6 +1,6 @@
 /** What a file's name says of its format. */
 import { extname } from 'node:path';
-import { TABLES } from '../options.js';
+import { TABLES } from '../engine/options.js';
 import { UsageError } from './usage.js';
 
 /** @import { Command } from './flags.js' */

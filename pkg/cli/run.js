@@ -1,7 +1,7 @@
 /** Does what the command line asks for, one file after the other. */
 import { createEngine } from '../index.node.js';
-import { compressorFor } from '../compressor.js';
-import { PointweaveError, toRecord } from '../errors.js';
+import { compressorFor } from '../files/compressor.js';
+import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { UsageError } from './usage.js';

@@ -1,5 +1,5 @@
 /** The element itself: attributes and the viewport come in, jobs and events go out. */
-import { PointweaveError } from '../errors.js';
+import { PointweaveError } from '../engine/errors.js';
 import { Reflecting } from './attributes.js';
 import { layerColors } from './colors.js';
 import { listenToKeys } from './keyboard.js';

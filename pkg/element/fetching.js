@@ -1,5 +1,5 @@
 /** A file's bytes from its address, with progress, and what went wrong as the package's own error. */
-import { PointweaveError } from '../errors.js';
+import { PointweaveError } from '../engine/errors.js';
 
 /**
  * @param {string} src

@@ -1,7 +1,7 @@
 /** A GLB as things to draw: its own objects where they are, in the studio's light. */
 import { Box3, BufferGeometry, Group, Mesh, Points, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { PointweaveError } from '../errors.js';
+import { PointweaveError } from '../engine/errors.js';
 import { frameBetween } from './frame.js';
 import { diameter } from './layers.js';
 import { meshMaterial, pointMaterial } from './materials.js';

@@ -3,7 +3,7 @@
  * its own hidden canvas, and the element copies it to its own. What an element shows stays while the context is lost.
  */
 import { WebGLRenderer } from 'three';
-import { PointweaveError } from '../errors.js';
+import { PointweaveError } from '../engine/errors.js';
 import { EyeDome } from './eye-dome.js';
 
 /**

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
 
-/// Builds the pool of `threads` workers; blocks until as many have called `lendThread`. `pkg/hosts.js` starts them.
+/// Builds the pool of `threads` workers; blocks until as many have called `lendThread`. `pkg/engine/worker-host.js` starts them.
 #[cfg(feature = "threads")]
 #[wasm_bindgen(js_name = buildPool)]
 pub fn build_pool(threads: usize) -> Result<(), JsError> {
@@ -36,7 +36,7 @@ pub fn lend_thread() {
     crate::base::pool::lend_thread();
 }
 
-/// `{ reduce, reconstruct }`: the defaults, which `pkg/options.js` repeats.
+/// `{ reduce, reconstruct }`: the defaults, which `pkg/engine/options.js` repeats.
 #[wasm_bindgen]
 pub fn defaults() -> JsResult {
     object([
@@ -150,7 +150,7 @@ pub fn sample(options: JsValue) -> JsResult {
 
 #[wasm_bindgen]
 extern "C" {
-    /// A cloud or mesh of the caller's, its arrays in memory of their own; `pkg/clouds.js` has checked their types.
+    /// A cloud or mesh of the caller's, its arrays in memory of their own; `pkg/engine/clouds.js` has checked their types.
     pub type PointCloud;
     #[wasm_bindgen(method, getter)]
     fn positions(this: &PointCloud) -> JsValue;

@@ -1,6 +1,6 @@
 //! Files from JavaScript, slice by slice: [`read_start`], [`read_push`] for each slice, [`read_end`] until it says that it
 //! is done. Both give the points that came as `{ positions, normals, colors, names, values, most }`, and nothing where none
-//! did; `pkg/reading.js` puts them together. The builds of readers have this and nothing else.
+//! did; `pkg/files/reading.js` puts them together. The builds of readers have this and nothing else.
 
 use crate::base::error::Error;
 use crate::formats::{Block, ColorValues, Format, Positions, Reading, Summary};

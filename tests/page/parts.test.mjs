@@ -4,16 +4,16 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import { DEFAULTS, reconstruct, reduce, sample } from 'pointweave';
-import { ticks } from '../../www/src/chart.js';
-import { UNKNOWN, colorAt, colorize } from '../../www/src/colormap.js';
-import { localSpacing } from '../../www/src/density.js';
-import { doubtsAbout } from '../../www/src/doubts.js';
-import { countHoles } from '../../www/src/holes.js';
-import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/settings.js';
-import { creases, sharpPoints } from '../../www/src/sharp.js';
-import { meaningOf } from '../../www/src/targets.js';
-import { likelyUp } from '../../www/src/upright.js';
-import { WORDS } from '../../www/src/words.js';
+import { ticks } from '../../www/src/controls/chart.js';
+import { UNKNOWN, colorAt, colorize } from '../../www/src/look/colormap.js';
+import { localSpacing } from '../../www/src/session/density.js';
+import { doubtsAbout } from '../../www/src/results/doubts.js';
+import { countHoles } from '../../www/src/look/holes.js';
+import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
+import { creases, sharpPoints } from '../../www/src/look/sharp.js';
+import { meaningOf } from '../../www/src/controls/targets.js';
+import { likelyUp } from '../../www/src/look/upright.js';
+import { WORDS } from '../../www/src/results/words.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
 const BLINDNESS = {

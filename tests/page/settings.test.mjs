@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
-import { CONTROLS } from '../../www/src/settings.js';
+import { CONTROLS } from '../../www/src/controls/settings.js';
 import { PATIENCE, start } from './browser.mjs';
 import { spherePoints, toPly } from './scans.mjs';
 

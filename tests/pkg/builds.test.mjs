@@ -2,9 +2,9 @@
 
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { platform } from '../../pkg/platform.node.js';
-import { workerHost } from '../../pkg/hosts.js';
-import { sharedMemory } from '../../pkg/memory.js';
+import { platform } from '../../pkg/engine/platform.node.js';
+import { workerHost } from '../../pkg/engine/worker-host.js';
+import { sharedMemory } from '../../pkg/engine/memory.js';
 import { arraysOf, engineFor, sphere } from './support.mjs';
 
 /** The threads build with a pool of one, which an engine would not take. */

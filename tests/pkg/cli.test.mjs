@@ -15,7 +15,7 @@ import { parse } from '../../pkg/cli/arguments.js';
 import { openInput, writeOutput } from '../../pkg/cli/files.js';
 import { WORDS } from '../../pkg/cli/help.js';
 import { UsageError } from '../../pkg/cli/usage.js';
-import { TABLES, TARGETS } from '../../pkg/options.js';
+import { TABLES, TARGETS } from '../../pkg/engine/options.js';
 import { openPage } from './browser.mjs';
 import { rejection } from './support.mjs';
 

@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import * as api from 'pointweave';
 import { DEFAULTS, PointweaveError, load } from 'pointweave/core';
-import { makeLoad } from '../../pkg/direct-api.js';
-import { platform } from '../../pkg/platform.node.js';
+import { makeLoad } from '../../pkg/engine/direct-api.js';
+import { platform } from '../../pkg/engine/platform.node.js';
 import { engineFor, rejection, sphere } from './support.mjs';
 
 /** What a function throws. */

@@ -9,10 +9,10 @@ import { promisify } from 'node:util';
 import { setFlagsFromString } from 'node:v8';
 import { runInNewContext } from 'node:vm';
 import { createEngine } from 'pointweave';
-import { makeApi } from '../../pkg/api.js';
-import { workerHost } from '../../pkg/hosts.js';
-import { sharedMemory } from '../../pkg/memory.js';
-import { platform } from '../../pkg/platform.node.js';
+import { makeApi } from '../../pkg/engine/api.js';
+import { workerHost } from '../../pkg/engine/worker-host.js';
+import { sharedMemory } from '../../pkg/engine/memory.js';
+import { platform } from '../../pkg/engine/platform.node.js';
 import { engineFor, rejection, sphere } from './support.mjs';
 
 const STAGES = ['octree', 'features', 'cluster', 'place', 'cells', 'fit', 'orient', 'extract', 'report'];

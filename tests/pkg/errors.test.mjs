@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { PointweaveError, createEngine, inspect, read, reconstruct, reduce, write } from 'pointweave';
-import { makeApi } from '../../pkg/api.js';
-import { platform } from '../../pkg/platform.node.js';
+import { makeApi } from '../../pkg/engine/api.js';
+import { platform } from '../../pkg/engine/platform.node.js';
 import { engineFor, rejection, sphere } from './support.mjs';
 
 /** Asserts what a promise rejects with, and gives the error. */

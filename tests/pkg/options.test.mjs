@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
-import { loadGlue } from '../../pkg/glue.js';
+import { loadGlue } from '../../pkg/engine/wasm-bindings.js';
 import { rejection, sphere } from './support.mjs';
 
 const cloud = sphere(500);

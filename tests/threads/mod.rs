@@ -1,4 +1,4 @@
-//! The pool for tests of the wasm-threads build, as `pkg/hosts.js` makes it for the package.
+//! The pool for tests of the wasm-threads build, as `pkg/engine/worker-host.js` makes it for the package.
 
 use js_sys::{JsString, Promise};
 use wasm_bindgen::prelude::*;

@@ -1,26 +1,26 @@
-import { addressOf, readAddress } from './address.js';
-import { Comparison } from './comparison.js';
-import { Controls } from './controls.js';
+import { addressOf, readAddress } from './session/address.js';
+import { Comparison } from './controls/comparison.js';
+import { Controls } from './controls/controls.js';
 import { announce, byId } from './dom.js';
-import { acceptFiles } from './files.js';
-import * as format from './format.js';
+import { acceptFiles } from './session/files.js';
+import * as format from './results/format.js';
 import { helpDialog } from './help.js';
 import { describeKeys, listenToKeys } from './keys.js';
-import { Look } from './look.js';
+import { Look } from './look/look.js';
 import { tendMenus } from './menus.js';
-import { MessageCard } from './messages.js';
-import { Numbers } from './numbers.js';
-import { ProgressBar } from './progress.js';
-import { isSample } from './samples.js';
-import { Saving } from './saving.js';
-import { Session } from './session.js';
-import { Sharing } from './sharing.js';
-import { meaningOf } from './targets.js';
+import { MessageCard } from './results/messages.js';
+import { Numbers } from './results/numbers.js';
+import { ProgressBar } from './results/progress.js';
+import { isSample } from './controls/samples.js';
+import { Saving } from './session/saving.js';
+import { Session } from './session/session.js';
+import { Sharing } from './session/sharing.js';
+import { meaningOf } from './controls/targets.js';
 
 /**
  * @import { Key } from './keys.js'
- * @import { Outcome, Scan, State } from './session.js'
- * @import { SampleName } from './samples.js'
+ * @import { Outcome, Scan, State } from './session/session.js'
+ * @import { SampleName } from './controls/samples.js'
  */
 
 /** Puts the session, the picture and the controls together. */

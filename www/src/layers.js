@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points } from 'three';
-import { typicalSpacing } from './density.js';
+import { typicalSpacing } from './session/density.js';
 import { toFrame } from './frame.js';
 import { boxMaterial, edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
 

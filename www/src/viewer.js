@@ -7,8 +7,8 @@ import { Orbit } from './orbit.js';
 /**
  * @import { Frame } from './frame.js'
  * @import { Drawable, Layer } from './layers.js'
- * @import { Paint } from './paints.js'
- * @import { Theme } from './theme.js'
+ * @import { Paint } from './look/paints.js'
+ * @import { Theme } from './look/theme.js'
  * @typedef {'points' | 'reduced' | 'mesh'} View
  *
  * What the picture shows: one view, or two beside each other that meet at a share of its width.

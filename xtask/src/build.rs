@@ -72,7 +72,7 @@ impl Build {
                     // Shared memory states its limit; this is all that wasm32 can address. Whoever
                     // makes the memory may choose less.
                     "-Clink-arg=--max-memory=4294967296",
-                    // Whoever makes it has to know this, too: `pkg/memory.js`.
+                    // Whoever makes it has to know this, too: `pkg/engine/memory.js`.
                     "-Clink-arg=--initial-memory=4194304",
                 ]);
                 // What wasm-bindgen needs to give every thread its own stack and statics.

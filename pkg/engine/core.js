@@ -1,0 +1,88 @@
+/**
+ * One wasm instance and the calls into it. Runs where it is imported: in a worker, or in the caller's
+ * own thread.
+ */
+import { PointweaveError, fromTrap, isFatal } from './errors.js';
+import { track } from './progress.js';
+
+/** @import { Build, Progress } from '../types.js' */
+
+/**
+ * A function of `src/js/wasm.rs` and what it takes; a progress callback is added as the last argument.
+ * @typedef {object} Request
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {unknown[]} args
+ */
+
+/**
+ * An instance and the functions that wasm-bindgen writes for it, as far as they are used here.
+ * @typedef {{
+ *   instantiate: (from: { module_or_path: WebAssembly.Module, memory?: WebAssembly.Memory }) => Promise<unknown>,
+ *   panicMessage: () => string,
+ * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
+ */
+
+/** The engine's builds, and those that hold readers of files alone. @typedef {Build | 'files' | 'las' | 'e57'} WasmBuild */
+
+/**
+ * @typedef {object} CoreOptions
+ * @property {WasmBuild} build
+ * @property {WebAssembly.Module} module the compiled wasm of that build
+ * @property {WebAssembly.Memory} [memory] of the threads build, shared by all instances of a pool
+ */
+
+export class Core {
+  /** @type {Glue} */
+  #glue;
+  /** Whether it can be called again. */
+  alive = true;
+
+  /** @param {Glue} glue an instance of its own, started */
+  constructor(glue) {
+    this.#glue = glue;
+  }
+
+  /**
+   * @param {Glue} glue
+   * @param {CoreOptions} options
+   */
+  static async start(glue, { module, memory }) {
+    await glue.instantiate({ module_or_path: module, memory });
+    return new Core(glue);
+  }
+
+  /**
+   * @param {Request} request
+   * @param {(progress: Progress) => boolean} listener its answer true stops the work
+   * @returns {any} what the call gives; arrays in it belong to the caller
+   */
+  run({ call, args }, listener) {
+    const progress = track(call, listener);
+    try {
+      const result = this.#glue[call]?.(...args, progress.update);
+      progress.finish();
+      return result;
+    } catch (thrown) {
+      const error = isRecord(thrown) ? new PointweaveError(thrown) : fromTrap(thrown, this.#panic());
+      this.alive = !isFatal(error);
+      throw error;
+    }
+  }
+
+  #panic() {
+    try {
+      return this.#glue.panicMessage();
+    } catch {
+      return ''; // the instance is too broken even to say why
+    }
+  }
+}
+
+/**
+ * An error that `src/js/wasm.rs` made, as opposed to a trap.
+ * @param {unknown} thrown
+ * @returns {thrown is import('./errors.js').ErrorRecord}
+ */
+function isRecord(thrown) {
+  return typeof thrown === 'object' && thrown !== null && !(thrown instanceof Error) && 'code' in thrown;
+}

@@ -1,0 +1,97 @@
+/** Calls into one instance in the caller's thread, all but `read` synchronous: `direct.js` and `direct.node.js` export them. */
+import { awake } from './keep-alive.js';
+import { cloudArgument, resultArgument } from './clouds.js';
+import { Core } from './core.js';
+import { PointweaveError } from './errors.js';
+import { inProcessHost, runHere } from './worker-host.js';
+import { checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { readFile, readerError, readerOf } from '../files/reading.js';
+import { signed } from './reports.js';
+import { slicesOf } from '../files/byte-source.js';
+
+const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
+
+/**
+ * What wasm takes, of what a call was given.
+ * @type {{ [call in Exclude<keyof import('../types.core.js').Core, 'read'>]: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
+ */
+const ARGUMENTS = {
+  reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
+  write: (result, own, transfer) => [resultArgument(result, transfer), withoutMeshopt(own)],
+  sample: (model, own) => [{ model: checkModel(model), ...own }],
+};
+
+/** Compression waits for packages to load, and no call here waits. @param {Record<string, any>} own */
+function withoutMeshopt({ meshopt, ...plain }) {
+  if (!meshopt) return plain;
+  throw new PointweaveError({
+    code: 'bad-option',
+    message: "meshopt is not done here: give what write makes to compress of 'pointweave/meshopt'",
+    expected: 'false',
+    found: meshopt,
+  });
+}
+
+/**
+ * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadGlue'>} platform
+ * @returns {typeof import('../types.core.js').load}
+ */
+export function makeLoad(platform) {
+  return async (options) => {
+    const { wasmUrl } = checkCoreOptions(options);
+    const core = await awake(start(platform, wasmUrl));
+    const calls = Object.entries(ARGUMENTS).map(([call, args]) => [
+      call,
+      (/** @type {any} */ subject, /** @type {any} */ options) =>
+        run(core, /** @type {keyof typeof ARGUMENTS} */ (call), (own, transfer) => args(subject, own, transfer), options),
+    ]);
+    return Object.fromEntries([...calls, ['read', (/** @type {any} */ data, /** @type {any} */ options) => read(platform, wasmUrl, data, options)]]);
+  };
+}
+
+/**
+ * @param {Parameters<typeof makeLoad>[0]} platform
+ * @param {import('../types.js').EngineOptions['wasmUrl']} wasmUrl
+ */
+async function start(platform, wasmUrl) {
+  const [module, glue] = await Promise.all([platform.compile('single', wasmUrl), platform.loadGlue('single')]);
+  return Core.start(glue, { build: 'single', module });
+}
+
+/**
+ * @param {Core} core
+ * @param {keyof typeof ARGUMENTS} call
+ * @param {(own: Record<string, any>, transfer?: boolean) => unknown[]} args
+ * @param {unknown} options
+ */
+function run(core, call, args, options) {
+  const { own, transfer, signal, onProgress } = checkOptions(call, options);
+  signal?.throwIfAborted();
+  if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
+  return signed(runHere(core, { call, args: args(own, transfer) }, { signal, onProgress }), CHOICE);
+}
+
+/**
+ * Readers are wasm of their own, which is loaded when a file of theirs comes: the one call that waits.
+ * @param {Parameters<typeof makeLoad>[0]} platform
+ * @param {import('../types.js').EngineOptions['wasmUrl']} wasmUrl
+ * @param {any} data
+ * @param {unknown} options
+ */
+async function read({ compile, loadGlue }, wasmUrl, data, options) {
+  const { own, transfer, signal = NEVER, onProgress } = checkOptions('read', options);
+  signal.throwIfAborted();
+  const file = slicesOf(data, transfer);
+  const build = await readerOf(file, own.format);
+  const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
+  const host = await inProcessHost(glue, { build, module });
+  try {
+    return await awake(readFile((request) => host.run(request, { signal }), file, { name: data.name, ...own }, { signal, onProgress }));
+  } catch (error) {
+    throw readerError(error, build);
+  }
+}
+
+const NEVER = new AbortController().signal;

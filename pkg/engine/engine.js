@@ -1,0 +1,329 @@
+/**
+ * The engine: one queue of calls, and one host (made when needed, made anew after a crash and after most aborts)
+ * that does them.
+ */
+import { awake } from './keep-alive.js';
+import { cloudArgument, resultArgument } from './clouds.js';
+import { compressorFor } from '../files/compressor.js';
+import { PointweaveError } from './errors.js';
+import { inProcessHost, workerHost } from './worker-host.js';
+import { sharedMemory } from './memory.js';
+import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { readFile, readerError, readerOf } from '../files/reading.js';
+import { signed } from './reports.js';
+import { slicesOf } from '../files/byte-source.js';
+
+/** @import { Build, EngineOptions } from '../types.js' */
+/** @import { Host, Watch, WorkerLike } from './worker-host.js' */
+/** @import { Glue, Request, WasmBuild } from './core.js' */
+
+/**
+ * What differs between a browser and Node.
+ * @typedef {object} Platform
+ * @property {boolean} worker whether the single-threaded build gets a worker unless it is told
+ * @property {() => number} cores
+ * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
+ * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
+ * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
+ */
+
+/** More threads than this cost memory and gain nothing. */
+const MOST_AUTO_THREADS = 16;
+
+/** How long a host without a call keeps its workers and memory; to start anew takes some tenths of a second. */
+const IDLE_MS = 60_000;
+
+/** A timer of longer than this would fire at once. */
+const LONGEST_TIMER_MS = 2 ** 31 - 1;
+
+export class Engine {
+  /** @type {Platform} */
+  #platform;
+  #worker;
+  #wasmUrl;
+  #workerUrl;
+  #idleMs;
+  /** What computes, and why. @type {ReturnType<typeof chooseBuild>} */
+  #choice;
+  /** What else is to be said of it. */
+  #note = '';
+  /** Ends when the last call of the queue has. @type {Promise<unknown>} */
+  #tail = Promise.resolve();
+  /** @type {Promise<Host> | undefined} */
+  #host;
+  /** Ends when the host is free: a call that was aborted may have to stop first. @type {Promise<unknown>} */
+  #work = Promise.resolve();
+  /** Calls that have not ended. */
+  #calls = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #idle;
+  #disposal = new AbortController();
+
+  /**
+   * Nothing is loaded before the first call, or {@link Engine.ready}.
+   * @param {Platform} platform
+   * @param {EngineOptions} [options]
+   */
+  constructor(platform, options) {
+    const { threads = 'auto', worker, wasmUrl, workerUrl, idleMs = IDLE_MS } = checkEngineOptions(options);
+    this.#platform = platform;
+    this.#worker = worker;
+    this.#wasmUrl = wasmUrl;
+    this.#workerUrl = workerUrl;
+    this.#idleMs = idleMs;
+    this.#choice = chooseBuild(platform, threads, worker);
+  }
+
+  get build() {
+    return this.#choice.build;
+  }
+
+  get threads() {
+    return this.#choice.threads;
+  }
+
+  get reason() {
+    return [this.#choice.reason, this.#note].filter(Boolean).join('; ');
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async reduce(cloud, options) {
+    const { own, transfer, ...watch } = this.#check('reduce', options);
+    return this.#run({ call: 'reduce', args: [cloudArgument(cloud, transfer), own] }, watch);
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async reconstruct(cloud, options) {
+    const { own, transfer, ...watch } = this.#check('reconstruct', options);
+    return this.#run({ call: 'reconstruct', args: [cloudArgument(cloud, transfer), own] }, watch);
+  }
+
+  /** @param {any} cloud @param {any} [options] */
+  async inspect(cloud, options) {
+    const { transfer, ...watch } = this.#check('inspect', options);
+    return this.#run({ call: 'inspect', args: [cloudArgument(cloud, transfer)] }, watch);
+  }
+
+  /** @param {any} data @param {any} [options] */
+  async read(data, options) {
+    const { own, transfer, ...watch } = this.#check('read', options);
+    const file = slicesOf(data, transfer);
+    const given = { name: data.name, ...own };
+    return this.#queued(watch, async (signal) => {
+      const reader = await readerOf(file, own.format);
+      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+    });
+  }
+
+  /** @param {any} result @param {any} [options] */
+  async write(result, options) {
+    const { own, transfer, ...watch } = this.#check('write', options);
+    const { meshopt, ...plain } = own;
+    const compress = await compressorFor(meshopt);
+    const bytes = await this.#run({ call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
+    return compress ? compress(bytes) : bytes;
+  }
+
+  /** @param {any} model @param {any} [options] */
+  async sample(model, options) {
+    const { own, transfer, ...watch } = this.#check('sample', options);
+    return this.#run({ call: 'sample', args: [{ model: checkModel(model), ...own }] }, watch);
+  }
+
+  /** Ends the worker or the pool. The call under way and those that wait reject with `disposed`. */
+  async dispose() {
+    if (this.#disposal.signal.aborted) return;
+    this.#disposal.abort(new PointweaveError({ code: 'disposed', message: 'the engine was disposed of' }));
+    clearTimeout(this.#idle);
+    await this.#endHost();
+  }
+
+  /** Starts the host before the first call. It ends when none comes. */
+  async ready() {
+    await this.#busy(() => this.#started());
+  }
+
+  /** The host, started when there is none. A start that fails is forgotten, so that the next call tries again. */
+  #started() {
+    this.#disposal.signal.throwIfAborted();
+    this.#host ??= this.#start().catch((error) => {
+      this.#host = undefined;
+      throw error;
+    });
+    return this.#host;
+  }
+
+  async #endHost() {
+    const host = this.#host;
+    this.#host = undefined;
+    await host?.then((started) => started.end(), nothing);
+  }
+
+  /**
+   * Does something with the host, which ends when nothing has been done with it for long enough.
+   * @template T
+   * @param {() => Promise<T>} work
+   */
+  async #busy(work) {
+    this.#calls++;
+    clearTimeout(this.#idle);
+    try {
+      return await awake(work());
+    } finally {
+      this.#calls--;
+      if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {
+        this.#idle = setTimeout(() => this.#endHost(), this.#idleMs);
+        if (typeof this.#idle === 'object') this.#idle.unref(); // Node does not wait for it
+      }
+    }
+  }
+
+  /**
+   * Everything that can be wrong before the caller's arrays are taken.
+   * @param {Parameters<typeof checkOptions>[0]} call
+   * @param {unknown} options
+   */
+  #check(call, options) {
+    this.#disposal.signal.throwIfAborted();
+    const checked = checkOptions(call, options);
+    checked.signal?.throwIfAborted();
+    return checked;
+  }
+
+  /**
+   * Waits for the calls before, then has the host do this one.
+   * @param {Request} request
+   * @param {Watch} watch
+   */
+  async #run(request, watch) {
+    return this.#queued(watch, async (signal) => {
+      await unlessAborted(this.#work, signal);
+      const work = this.#ask(request, { signal, onProgress: watch.onProgress });
+      this.#work = work.then(nothing, nothing);
+      return work;
+    });
+  }
+
+  /**
+   * Has the host do a request.
+   * @param {Request} request
+   * @param {Watch & { signal: AbortSignal }} watch
+   */
+  async #ask(request, watch) {
+    const host = await unlessAborted(this.#started(), watch.signal);
+    try {
+      return signed(await host.run(request, watch), this);
+    } finally {
+      if (!host.usable()) this.#host = undefined;
+    }
+  }
+
+  /**
+   * Waits for the calls before, then does a job; those after wait for it.
+   * @template T
+   * @param {Watch} watch
+   * @param {(signal: AbortSignal) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #queued({ signal: own }, job) {
+    const signal = own ? AbortSignal.any([this.#disposal.signal, own]) : this.#disposal.signal;
+    const before = this.#tail;
+    const result = this.#busy(async () => {
+      await unlessAborted(before, signal);
+      return unlessAborted(job(signal), signal);
+    });
+    this.#tail = Promise.all([before, result.then(nothing, nothing)]);
+    return result;
+  }
+
+  /**
+   * Does something with a reader's wasm, which is loaded for it and ends after it, with its memory.
+   * @template T
+   * @param {import('../files/reading.js').Reader} reader
+   * @param {AbortSignal} signal
+   * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
+   * @returns {Promise<T>}
+   */
+  async #withReader(reader, signal, job) {
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await unlessAborted(compile(reader, this.#wasmUrl), signal);
+    const inWorker = this.build === 'threads' || (this.#worker ?? worker);
+    const host = await (inWorker
+      ? workerHost(() => startWorker(this.#workerUrl), { build: reader, threads: 1, module })
+      : inProcessHost(await loadGlue(reader), { build: reader, module }));
+    try {
+      return await job((request) => host.run(request, { signal }));
+    } catch (error) {
+      throw readerError(error, reader);
+    } finally {
+      host.end();
+    }
+  }
+
+  /** @returns {Promise<Host>} */
+  async #start() {
+    if (this.build === 'threads') {
+      try {
+        return await this.#startBuild();
+      } catch (error) {
+        const why = error instanceof Error ? error.message : String(error);
+        this.#choice = { build: 'single', threads: 1, reason: `the threads build did not start: ${why}` };
+      }
+    }
+    return this.#startBuild();
+  }
+
+  async #startBuild() {
+    const { build, threads } = this;
+    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const module = await compile(build, this.#wasmUrl);
+    const startOne = () => startWorker(this.#workerUrl);
+    if (build === 'threads') {
+      const { memory, note } = sharedMemory();
+      const host = await workerHost(startOne, { build, threads, module, memory });
+      this.#note = note;
+      return host;
+    }
+    return this.#worker ?? worker
+      ? workerHost(startOne, { build, threads, module })
+      : inProcessHost(await loadGlue(build), { build, module });
+  }
+}
+
+/**
+ * Threads need a worker: who waits for them must not be the caller's thread, which could then neither abort nor hear
+ * that one of them died.
+ * @param {Platform} platform
+ * @param {'auto' | number} threads
+ * @param {boolean} [worker]
+ * @returns {{ build: Build, threads: number, reason: string }}
+ */
+function chooseBuild(platform, threads, worker) {
+  const single = /** @type {const} */ ({ build: 'single', threads: 1 });
+  if (threads === 1) return { ...single, reason: 'one thread was asked for' };
+  if (worker === false) return { ...single, reason: 'threads need a worker' };
+  const { possible, reason } = platform.threads();
+  if (!possible) return { ...single, reason };
+  const wanted = threads === 'auto' ? Math.min(platform.cores(), MOST_AUTO_THREADS) : threads;
+  if (wanted === 1) return { ...single, reason: 'there is one processor core' };
+  return { build: 'threads', threads: wanted, reason };
+}
+
+function nothing() {}
+
+/**
+ * What `promise` gives, or the signal's reason as soon as it is aborted.
+ * @template T
+ * @param {Promise<T>} promise
+ * @param {AbortSignal} signal
+ * @returns {Promise<T>}
+ */
+function unlessAborted(promise, signal) {
+  return new Promise((resolve, reject) => {
+    const abort = () => reject(signal.reason);
+    if (signal.aborted) return abort();
+    signal.addEventListener('abort', abort);
+    promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
+  });
+}

@@ -1,0 +1,20 @@
+/** The modules that wasm-bindgen writes. Their names are spelled out, for bundlers to see them. */
+
+/** @type {Record<import('./core.js').WasmBuild, () => Promise<{ makeGlue: () => import('./core.js').Glue }>>} */
+const MODULES = {
+  single: () => import('../wasm/single/pointweave.js'),
+  threads: () => import('../wasm/threads/pointweave.js'),
+  files: () => import('../wasm/files/pointweave.js'),
+  las: () => import('../wasm/las/pointweave.js'),
+  e57: () => import('../wasm/e57/pointweave.js'),
+};
+
+/**
+ * An instance of its own, not started. Nothing keeps it but its owner.
+ * @param {import('./core.js').WasmBuild} build
+ * @returns {Promise<import('./core.js').Glue>}
+ */
+export async function loadGlue(build) {
+  const { makeGlue } = await MODULES[build]();
+  return makeGlue();
+}

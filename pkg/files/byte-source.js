@@ -1,0 +1,37 @@
+/** A file in slices: from a Blob, which may lie on a disk, or from the caller's bytes. */
+import { own } from '../engine/arrays.js';
+import { PointweaveError } from '../engine/errors.js';
+
+/** So much is read at once: little beside a large file, and enough that calls cost nothing. */
+const SLICE = 4 << 20;
+
+/**
+ * @typedef {object} Slices
+ * @property {number} size in bytes
+ * @property {(at: number) => Promise<Uint8Array>} read the bytes from `at` on, in memory of their own
+ */
+
+/**
+ * The first slice of bytes is copied before this returns, the others when they are read.
+ * @param {unknown} data
+ * @param {boolean} [transfer] take the caller's buffer
+ * @returns {Slices}
+ */
+export function slicesOf(data, transfer) {
+  if (typeof Blob !== 'undefined' && data instanceof Blob) {
+    return { size: data.size, read: async (at) => new Uint8Array(await data.slice(at, at + SLICE).arrayBuffer()) };
+  }
+  const given = viewOf(data);
+  const bytes = transfer ? own(given, true) : given;
+  const first = bytes.slice(0, SLICE);
+  return { size: bytes.length, read: async (at) => (at === 0 ? first : bytes.slice(at, at + SLICE)) };
+}
+
+/** @param {unknown} data */
+function viewOf(data) {
+  if (data instanceof ArrayBuffer) return new Uint8Array(data);
+  if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+  const kind = data === null ? 'null' : typeof data === 'object' ? data.constructor?.name ?? 'object' : typeof data;
+  const expected = 'a File, Blob, ArrayBuffer or Uint8Array';
+  throw new PointweaveError({ code: 'bad-input', message: `data is of type ${kind}: expected ${expected}`, expected, found: kind });
+}

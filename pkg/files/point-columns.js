@@ -1,0 +1,145 @@
+/** The points of a file, which come in blocks, as the arrays of a cloud. */
+import { PointweaveError } from '../engine/errors.js';
+
+/** @import { FileCloud, Format } from '../types.js' */
+
+/**
+ * The points that came with a slice; see `src/js/wasm_read.rs`.
+ * @typedef {object} Block
+ * @property {Float32Array | Float64Array} positions
+ * @property {Float32Array} [normals]
+ * @property {Uint8Array | Float32Array} [colors]
+ * @property {string[]} names of the attributes
+ * @property {Float32Array[]} values
+ * @property {number} [most] points that the file has room for
+ */
+
+/**
+ * What only the whole file tells.
+ * @typedef {object} Summary
+ * @property {Format} format
+ * @property {number} dropped
+ * @property {number} replaced
+ * @property {number} faces
+ * @property {boolean} narrow single precision suffices for the positions
+ * @property {number} colorScale from colours that are no bytes to 0-255
+ * @property {boolean} hasColors
+ * @property {boolean} hasNormals
+ */
+
+export class Columns {
+  /** Of positions, normals, colours; then of the attributes. @type {Map<string, Column>} */
+  #columns = new Map();
+  /** @type {Column[]} */
+  #attributes = [];
+  /** @type {string[]} */
+  #names = [];
+  points = 0;
+
+  /**
+   * @param {Block} block
+   * @param {number} expected points in all, as far as can be told
+   */
+  add({ positions, normals, colors, names, values }, expected) {
+    this.points += positions.length / 3;
+    this.#append('positions', positions, 3 * expected);
+    if (normals) this.#append('normals', normals, 3 * expected);
+    if (colors) this.#append('colors', colors, 3 * expected);
+    this.#names = names;
+    values.forEach((array, i) => (this.#attributes[i] ??= new Column(array)).append(array, expected));
+  }
+
+  /**
+   * @param {Summary} summary
+   * @returns {FileCloud}
+   */
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals }) {
+    const positions = this.#take('positions') ?? new Float32Array(0);
+    const normals = this.#take('normals');
+    const colors = hasColors ? this.#take('colors') : undefined;
+    const attributes = this.#names.map((name, i) => [name, this.#attributes[i].take()]);
+    return /** @type {FileCloud} */ ({
+      positions: narrow && positions instanceof Float64Array ? convert(Float32Array, positions) : positions,
+      ...(normals && hasNormals && { normals }),
+      ...(colors && { colors: colors instanceof Uint8Array ? colors : toBytes(/** @type {Float32Array} */ (colors), colorScale) }),
+      ...(attributes.length > 0 && { attributes: Object.fromEntries(attributes) }),
+      file: { format, dropped, replaced, faces },
+    });
+  }
+
+  /** @param {string} name @param {Values} values @param {number} expected */
+  #append(name, values, expected) {
+    let column = this.#columns.get(name);
+    if (!column) this.#columns.set(name, (column = new Column(values)));
+    column.append(values, expected);
+  }
+
+  /** @param {string} name */
+  #take(name) {
+    const column = this.#columns.get(name);
+    this.#columns.delete(name);
+    return column?.take();
+  }
+}
+
+/** @typedef {Uint8Array | Float32Array | Float64Array} Values */
+
+/** An array that grows. */
+class Column {
+  #array;
+  #length = 0;
+
+  /** @param {Values} like of the type that it is to have */
+  constructor(like) {
+    this.#array = create(like, 0);
+  }
+
+  /**
+   * @param {Values} values
+   * @param {number} expected values in all
+   */
+  append(values, expected) {
+    const length = this.#length + values.length;
+    if (length > this.#array.length) {
+      const larger = create(values, Math.max(length, Math.min(expected, 2 ** 32), expected < length ? 1.5 * length : 0));
+      larger.set(this.#array.subarray(0, this.#length));
+      this.#array = larger;
+    }
+    this.#array.set(values, this.#length);
+    this.#length = length;
+  }
+
+  /** The values, in a buffer of just their length. */
+  take() {
+    return this.#length === this.#array.length ? this.#array : this.#array.slice(0, this.#length);
+  }
+}
+
+/** @param {Values} like @param {number} length */
+function create(like, length) {
+  const type = /** @type {new (length: number) => Values} */ (like.constructor);
+  return convert(type, Math.ceil(length));
+}
+
+/**
+ * @template {Values} T
+ * @param {new (from: any) => T} type
+ * @param {number | Values} from
+ */
+function convert(type, from) {
+  try {
+    return new type(from);
+  } catch (error) {
+    const length = typeof from === 'number' ? from : from.length;
+    throw new PointweaveError({ code: 'out-of-memory', message: `there is no memory for ${length} values of the file's points`, found: String(error) });
+  }
+}
+
+/** As `src/formats/table.rs` does it, in single precision. @param {Float32Array} colors @param {number} scale */
+function toBytes(colors, scale) {
+  const bytes = convert(Uint8Array, colors.length);
+  for (let i = 0; i < colors.length; i++) {
+    bytes[i] = Math.min(255, Math.max(0, Math.floor(Math.fround(colors[i] * scale) + 0.5)));
+  }
+  return bytes;
+}

@@ -1,0 +1,86 @@
+/** A file to a cloud, slice by slice, by the wasm that has its reader. */
+import { Columns } from './point-columns.js';
+import { PointweaveError } from '../engine/errors.js';
+
+/** @import { FileCloud, Format, Progress } from '../types.js' */
+/** @import { Block, Summary } from './point-columns.js' */
+/** @import { Request, WasmBuild } from '../engine/core.js' */
+/** @import { Slices } from './byte-source.js' */
+
+/** The builds that hold readers alone. @typedef {Extract<WasmBuild, 'files' | 'las' | 'e57'>} Reader */
+
+/** How the files start whose reader is a build of its own. @type {[string, Reader][]} */
+const READERS = [['LASF', 'las'], ['ASTM-E57', 'e57']];
+
+/**
+ * The build that reads a file: by the format that the caller says, else by how the file starts.
+ * @param {Slices} file
+ * @param {Format} [format]
+ * @returns {Promise<Reader>}
+ */
+export async function readerOf(file, format) {
+  const start = String.fromCharCode(...(await file.read(0)).subarray(0, 8));
+  const found = READERS.find(([magic, name]) => (format ? name === format : start.startsWith(magic)));
+  return found?.[1] ?? 'files';
+}
+
+/**
+ * @param {(request: Request) => Promise<any>} ask one request of the wasm that has the reader
+ * @param {Slices} file
+ * @param {{ name?: string, format?: Format }} options
+ * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
+ * @returns {Promise<FileCloud>}
+ */
+export async function readFile(ask, file, options, { signal, onProgress }) {
+  const columns = new Columns();
+  let told = 0;
+  /** @param {number} share */
+  const tell = (share) => {
+    told = Math.max(told, share);
+    onProgress?.({ stage: 'read', fraction: told, overall: told });
+    signal.throwIfAborted();
+  };
+  /** @param {Block | undefined} block @param {number} read bytes */
+  const add = (block, read) => {
+    if (!block) return 0;
+    const rate = (columns.points + block.positions.length / 3) / Math.max(read, 1);
+    const expected = block.most ?? Math.ceil(1.02 * rate * file.size);
+    columns.add(block, expected);
+    return expected;
+  };
+
+  tell(0);
+  await ask({ call: 'readStart', args: [{ ...options, size: file.size }] });
+  for (let at = 0; at < file.size; ) {
+    const slice = await file.read(at);
+    signal.throwIfAborted();
+    if (slice.length === 0) throw new PointweaveError({ code: 'bad-input', message: 'the data ended before its size', expected: file.size, found: at });
+    at += slice.length;
+    add(await ask({ call: 'readPush', args: [slice] }), at);
+    // Some formats give no point before all of the file is there; to take it apart is then the other half.
+    tell((at / file.size) * (columns.points > 0 ? 0.99 : 0.5));
+  }
+  for (;;) {
+    /** @type {{ block?: Block, summary?: Summary }} */
+    const { block, summary } = await ask({ call: 'readEnd', args: [] });
+    const expected = add(block, file.size);
+    if (summary) {
+      const cloud = columns.finish(summary);
+      tell(1);
+      return cloud;
+    }
+    tell(0.5 + 0.49 * Math.min(1, columns.points / Math.max(expected, 1)));
+  }
+}
+
+/**
+ * What went wrong in a reader's wasm. That it trapped, at data which it did not expect, says that they are damaged.
+ * @param {unknown} error
+ * @param {Reader} reader
+ */
+export function readerError(error, reader) {
+  if (!(error instanceof PointweaveError) || error.code !== 'internal' || reader === 'files') return error;
+  const expected = `the content of ${reader === 'las' ? 'a LAS or LAZ' : 'an E57'} file`;
+  const found = 'data that cannot be taken apart';
+  return new PointweaveError({ code: 'bad-file', message: `bad ${reader.toUpperCase()} file: expected ${expected}, found ${found} (${error.message})`, expected, found });
+}

@@ -1,0 +1,141 @@
+import { Amount } from './amount.js';
+import { byId, element } from '../dom.js';
+import { CONTROLS, TARGETS, defaultOf } from './settings.js';
+
+/**
+ * @import { Settings, Target, TargetKind } from './settings.js'
+ */
+
+/** Targets that say how many points there will be. */
+const COUNTED = new Set(['ratio', 'count']);
+
+/** The controls of all options, made from the tables of settings.js and the package's defaults. */
+export class Controls {
+  #settings;
+  #changed;
+  #describe;
+  #kind = byId('target-kind', HTMLSelectElement);
+  #count = byId('keep-count', HTMLOutputElement);
+  #reset = byId('reset', HTMLButtonElement);
+  #keep;
+  /** Each shows what the settings say. @type {(() => void)[]} */
+  #refreshers = [];
+  /** What is kept, chosen or not. @type {Target} */
+  #target = { kind: 'ratio', value: TARGETS.ratio.start };
+  /** Of the open scan. */
+  #points = 0;
+
+  /**
+   * @param {Settings} settings
+   * @param {() => void} changed  after a rest, to start the job
+   * @param {(target: Target) => string} describe  what a target means for the open scan
+   */
+  constructor(settings, changed, describe) {
+    this.#settings = settings;
+    this.#changed = changed;
+    this.#describe = describe;
+    this.#keep = new Amount(
+      byId('keep-slider', HTMLInputElement),
+      byId('keep-field', HTMLInputElement),
+      (value) => this.#say({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
+      (value) => this.#choose({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
+    );
+    for (const [kind, { label }] of Object.entries(TARGETS)) this.#kind.append(new Option(label, kind));
+    this.#kind.addEventListener('change', () => this.#choose(this.#converted(/** @type {TargetKind} */ (this.#kind.value))));
+    this.#reset.addEventListener('click', () => {
+      settings.reset();
+      this.#changed();
+    });
+    byId('options', HTMLElement).append(...Object.keys(CONTROLS).map((key) => this.#make(key)));
+    this.#refresh();
+  }
+
+  /** Shows what is chosen, and what is kept of a scan of so many points. */
+  show(/** @type {Target} */ target, /** @type {number} */ points) {
+    this.#points = points;
+    this.#target = target;
+    const { label, ...range } = TARGETS[target.kind];
+    const high = target.kind === 'count' ? Math.max(range.low + 1, points) : range.high;
+    this.#kind.value = target.kind;
+    for (const id of ['keep-slider', 'keep-field']) byId(id, HTMLInputElement).ariaLabel = `${label}${range.unit && ', in per cent'}`;
+    byId('keep-unit', HTMLElement).textContent = range.unit;
+    byId('keep-title', HTMLElement).textContent = COUNTED.has(target.kind) ? 'Points to keep' : label;
+    this.#keep.set({ ...range, high }, target.value);
+    this.#say(target);
+    this.#refresh();
+  }
+
+  #say(/** @type {Target} */ target) {
+    const words = this.#describe(target);
+    this.#count.textContent = words;
+    this.#keep.describe(words);
+  }
+
+  #choose(/** @type {Target} */ target) {
+    this.#settings.target = target;
+    this.#target = target;
+    this.#changed();
+  }
+
+  /** The same amount in another measure, where there is one. */
+  #converted(/** @type {TargetKind} */ kind) {
+    const { kind: from, value } = this.#target;
+    if (kind === 'count' && from === 'ratio') return { kind, value: Math.max(1, Math.round(value * this.#points)) };
+    if (kind === 'ratio' && from === 'count') return { kind, value: Math.min(1, value / Math.max(1, this.#points)) };
+    return { kind, value: TARGETS[kind].start };
+  }
+
+  #refresh() {
+    for (const refresh of this.#refreshers) refresh();
+    this.#reset.disabled = !this.#settings.changed;
+  }
+
+  #make(/** @type {string} */ key) {
+    const control = CONTROLS[key];
+    const id = `option-${key}`;
+    const hint = element('p', { className: 'hint', id: `${id}-hint`, textContent: control.hint });
+    const label = element('label', { htmlFor: id, textContent: control.label });
+    const input = this.#input(key, id);
+    input.querySelector(`#${id}`)?.setAttribute('aria-describedby', hint.id);
+    const row = element('div', { className: `option ${control.kind}` });
+    row.append(label, input, hint);
+    return row;
+  }
+
+  /** @param {string} key @param {string} id @returns {HTMLElement} a box with what is labelled */
+  #input(key, id) {
+    const control = CONTROLS[key];
+    const settings = this.#settings;
+    const box = element('div', { className: 'option-input' });
+    const take = (/** @type {string | number | boolean | undefined} */ value) => {
+      settings.set(key, value);
+      this.#changed();
+    };
+    if (control.kind === 'choice') {
+      const select = element('select', { id });
+      for (const [name, words] of Object.entries(control.choices)) select.append(new Option(words, name));
+      select.addEventListener('change', () => take(select.value));
+      this.#refreshers.push(() => (select.value = String(settings.get(key))));
+      box.append(select);
+    } else if (control.kind === 'flag') {
+      const check = element('input', { id, type: 'checkbox' });
+      check.addEventListener('change', () => take(check.checked));
+      this.#refreshers.push(() => (check.checked = Boolean(settings.get(key))));
+      box.append(check);
+    } else {
+      const slider = element('input', { type: 'range', ariaLabel: `${control.label}, slider` });
+      const field = element('input', { id, type: 'number', step: 'any', inputMode: 'decimal' });
+      const unit = element('span', { textContent: control.unit });
+      const amount = new Amount(slider, field, () => {}, take);
+      this.#refreshers.push(() => {
+        const fallback = control.follows?.(settings) ?? defaultOf(key);
+        const chosen = /** @type {number | undefined} */ (settings.values[key]);
+        const number = typeof fallback === 'number' ? fallback : Math.sqrt(control.low * control.high);
+        const shown = typeof fallback === 'number' ? String(Number((fallback * (control.times ?? 1)).toPrecision(3))) : String(fallback);
+        amount.set(control, chosen, number, shown);
+      });
+      box.append(slider, field, unit);
+    }
+    return box;
+  }
+}

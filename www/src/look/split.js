@@ -1,0 +1,62 @@
+import { byId } from '../dom.js';
+
+/** @import { View } from '../viewer.js' */
+
+const STEP = 0.02;
+
+/** The divider between two views beside each other: it is dragged, or moved with the arrows. */
+export class Split {
+  #stage = byId('stage', HTMLElement);
+  #box = byId('split', HTMLElement);
+  #handle = byId('split-handle', HTMLElement);
+  #left = byId('split-left', HTMLSelectElement);
+  #right = byId('split-right', HTMLSelectElement);
+  #changed;
+  /** Where it is, as a share of the width. */
+  at = 0.5;
+
+  constructor(/** @type {() => void} */ changed) {
+    this.#changed = changed;
+    for (const select of [this.#left, this.#right]) select.addEventListener('change', changed);
+    this.#handle.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      this.#handle.focus();
+      this.#handle.setPointerCapture(event.pointerId);
+    });
+    this.#handle.addEventListener('pointermove', (event) => {
+      if (!this.#handle.hasPointerCapture(event.pointerId)) return;
+      const { left, width } = this.#stage.getBoundingClientRect();
+      this.#move((event.clientX - left) / width);
+    });
+    this.#handle.addEventListener('keydown', (event) => {
+      const to = { ArrowLeft: this.at - STEP, ArrowRight: this.at + STEP, Home: 0, End: 1 }[event.key];
+      if (to === undefined) return;
+      event.preventDefault();
+      this.#move(to);
+    });
+  }
+
+  get sides() {
+    return { left: /** @type {View} */ (this.#left.value), right: /** @type {View} */ (this.#right.value) };
+  }
+
+  show(/** @type {boolean} */ shown) {
+    this.#box.hidden = !shown;
+  }
+
+  /** Without a mesh there is none to compare with. */
+  offerMesh(/** @type {boolean} */ possible) {
+    for (const select of [this.#left, this.#right]) {
+      for (const option of select.options) if (option.value === 'mesh') option.disabled = !possible;
+    }
+    if (!possible && this.#right.value === 'mesh') this.#right.value = 'reduced';
+    if (possible && this.#right.value === 'reduced' && this.#left.value === 'points') this.#right.value = 'mesh';
+  }
+
+  #move(/** @type {number} */ to) {
+    this.at = Math.min(1, Math.max(0, to));
+    this.#box.style.setProperty('--at', String(this.at));
+    this.#handle.ariaValueNow = String(Math.round(100 * this.at));
+    this.#changed();
+  }
+}

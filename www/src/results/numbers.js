@@ -1,0 +1,119 @@
+import { byId } from '../dom.js';
+import { copyText } from '../clipboard.js';
+import { doubtsAbout } from './doubts.js';
+import * as format from './format.js';
+import { countHoles } from '../look/holes.js';
+import { stageWords } from './stages.js';
+
+/** @import { Outcome, Scan } from '../session/session.js' */
+
+/**
+ * The panel of results. Each number is a `data` element: what it shows is for people, its `value` attribute is
+ * the number itself, in file units, fractions, bytes and milliseconds.
+ */
+export class Numbers {
+  #box = byId('numbers', HTMLElement);
+  #engine = byId('engine', HTMLElement);
+  #reason = byId('engine-reason', HTMLElement);
+  #stages = byId('stages', HTMLUListElement);
+  #summary = byId('made-summary', HTMLElement);
+  #doubt = byId('doubt', HTMLElement);
+  #json = '';
+
+  constructor() {
+    const copy = byId('copy-json', HTMLButtonElement);
+    copy.addEventListener('click', () => copyText(this.#json, copy));
+  }
+
+  /** A new scan: only its size and its place are known. */
+  opened(/** @type {Scan} */ { count, cloud: { origin } }) {
+    for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
+    this.#set('inputPoints', count, format.count);
+    this.#doubt.hidden = true;
+    byId('origin', HTMLElement).hidden = !origin;
+    ['X', 'Y', 'Z'].forEach((axis, i) => this.#set(`origin${axis}`, origin?.[i], format.count));
+    this.#engine.textContent = '–';
+    this.#reason.textContent = '';
+    this.#summary.textContent = '';
+    this.#json = '';
+    byId('copy-json', HTMLButtonElement).disabled = true;
+    this.#stages.replaceChildren();
+    this.stale();
+  }
+
+  /** What is shown belongs to settings that have been changed since. */
+  stale() {
+    this.#box.dataset.fresh = 'false';
+  }
+
+  /** @param {Outcome} outcome @param {object} settings  what was asked for, to be copied with the numbers */
+  made({ scan, reduced, mesh }, settings) {
+    const report = mesh?.report ?? reduced.report;
+    this.#set('inputPoints', report.inputPoints, format.count);
+    this.#set('outputPoints', report.outputPoints, format.count);
+    this.#set('triangles', mesh?.report.triangles, format.count);
+    this.#set('reduction', report.outputPoints / report.inputPoints, format.percent);
+    this.#set('boundaryEdges', mesh?.report.boundaryEdges, format.count);
+    this.#set('holes', mesh ? holesOf(mesh) : undefined, format.count);
+    this.#set('components', mesh?.report.components, format.count);
+    this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
+    this.#set('totalMs', report.totalMs, format.duration);
+    this.#doubt.textContent = doubtsAbout({ scan, mesh });
+    this.#doubt.hidden = !this.#doubt.textContent;
+    const { mean, rms, max } = report.distance;
+    for (const [name, share] of Object.entries({ errorMean: mean, errorRms: rms, errorMax: max })) {
+      this.#set(name, share * scan.frame.diagonal, format.length);
+      this.#set(`${name}Share`, share, format.percent);
+    }
+    this.#engine.textContent = engineWords(report);
+    this.#reason.textContent = sentence(report.reason);
+    this.#summary.textContent = format.duration(report.totalMs);
+    const { title, count, frame: { size, diagonal }, cloud: { origin } } = scan;
+    this.#json = JSON.stringify({ scan: { title, count, size, diagonal, origin }, settings, report }, null, 2);
+    byId('copy-json', HTMLButtonElement).disabled = false;
+    this.#showStages(report.ms);
+    this.#box.dataset.fresh = 'true';
+  }
+
+  #set(/** @type {string} */ name, /** @type {number | undefined} */ value, /** @type {(n: number) => string} */ words) {
+    const cell = this.#box.querySelector(`data[data-number="${name}"]`);
+    if (!cell) throw new Error(`the page has no number ${name}`);
+    put(/** @type {HTMLDataElement} */ (cell), value, words);
+  }
+
+  #showStages(/** @type {Record<string, number>} */ ms) {
+    const longest = Math.max(...Object.values(ms));
+    this.#stages.replaceChildren(
+      ...Object.entries(ms).map(([stage, time]) => {
+        const row = document.createElement('li');
+        const name = document.createElement('span');
+        name.textContent = stageWords(stage);
+        const value = document.createElement('data');
+        value.dataset.stage = stage;
+        put(value, time, format.duration);
+        row.append(name, value);
+        row.style.setProperty('--share', String(time / longest));
+        return row;
+      }),
+    );
+  }
+}
+
+/** Open borders cost a look at every edge, so only where there are some. */
+function holesOf(/** @type {import('pointweave').SurfaceMesh} */ { report, indices, positions }) {
+  return report.boundaryEdges ? countHoles(indices, positions.length / 3) : 0;
+}
+
+function sentence(/** @type {string} */ reason) {
+  return reason && `${reason[0].toUpperCase()}${reason.slice(1)}.`;
+}
+
+function engineWords(/** @type {{ build: string, threads: number }} */ { build, threads }) {
+  return build === 'threads' ? `${threads} threads` : 'one thread';
+}
+
+function put(/** @type {HTMLDataElement} */ cell, /** @type {number | undefined} */ value, /** @type {(n: number) => string} */ words) {
+  cell.textContent = value === undefined ? '–' : words(value);
+  if (value === undefined) cell.removeAttribute('value');
+  else cell.value = String(value);
+}

@@ -1,0 +1,40 @@
+import { isSample } from '../controls/samples.js';
+
+/**
+ * @import { Settings } from '../controls/settings.js'
+ * @import { Scan } from './session.js'
+ *
+ * The part of the address after #: the sample, the settings that were chosen, and what is shown. A file of the
+ * person's is never in it. `?src=` before it names a file beside the page.
+ */
+
+/** What an address asks for. */
+export function readAddress() {
+  const words = new URLSearchParams(location.hash.slice(1));
+  const sample = words.get('sample');
+  return {
+    words,
+    sample: isSample(sample) ? sample : null,
+    src: new URLSearchParams(location.search).get('src'),
+    view: words.get('view'),
+    paint: words.get('colors'),
+  };
+}
+
+/**
+ * The address that shows the same again.
+ * @param {Scan | null} scan
+ * @param {Settings} settings
+ * @param {{ view: string, paint: string }} look
+ */
+export function addressOf(scan, settings, { view, paint }) {
+  const words = new URLSearchParams();
+  if (scan?.model) words.set('sample', scan.model);
+  for (const [key, value] of settings.entries()) words.set(key, value);
+  if (view !== 'mesh') words.set('view', view);
+  if (paint !== 'natural') words.set('colors', paint);
+  const url = new URL(location.href);
+  url.search = scan?.src ? new URLSearchParams({ src: scan.src }).toString() : '';
+  url.hash = words.toString();
+  return url.href;
+}

@@ -1,0 +1,234 @@
+import { createEngine, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { fetchBytes, ownAddress } from './fetching.js';
+import { frameOf } from '../frame.js';
+import { splitOrigin } from './origin.js';
+import { SAMPLES } from '../controls/samples.js';
+import { Settings, TARGETS } from '../controls/settings.js';
+
+/**
+ * @import { FileCloud, PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { Frame } from '../frame.js'
+ * @import { SampleName } from '../controls/samples.js'
+ * @import { Target } from '../controls/settings.js'
+ *
+ * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
+ * @typedef {{ title: string, file: string, model?: SampleName, src?: string }} Source
+ * @typedef {PointCloud & Partial<Pick<FileCloud, 'file'>>} Opened
+ * @typedef {Source & { cloud: Opened, count: number, frame: Frame }} Scan
+ * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
+ * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
+ */
+
+/** The least and the most points that the page keeps of its own accord: enough for a shape, few enough to wait for. */
+const ENOUGH = 2_000;
+const AMPLE = 60_000;
+/** The same for a phone, whose processor and memory are smaller. */
+const AMPLE_ON_PHONE = 20_000;
+const PHONE = '(pointer: coarse) and (max-width: 900px)';
+
+/** Stages whose settings have not changed are not run again. */
+const REMEMBERED = { keep: true };
+
+/** Codes that say: there is no surface here, but the points can still be reduced. */
+const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
+
+/**
+ * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page.
+ *
+ * Events: `state` (a State), `opened` (a Scan), `progress` ({stage, overall}), `made` (an Outcome),
+ * `cancelled`, `failed` ({error, title}); the value is the event's `detail`.
+ */
+export class Session extends EventTarget {
+  settings = new Settings();
+  /** @type {Scan | null} */
+  scan = null;
+  /** @type {Outcome | null} the last result of the open scan */
+  outcome = null;
+  /** The options of the last job. */
+  #asked = '';
+  /** @type {AbortController | null} */
+  #job = null;
+  /** What is computed beside the job, and ends with it. @type {AbortController | null} */
+  #aside = null;
+
+  /** Generates one of the package's simulated scans and makes its mesh. */
+  openSample(/** @type {SampleName} */ model) {
+    const { title, count } = SAMPLES[model];
+    return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
+  }
+
+  /** Reads a file of the person's and makes its mesh. */
+  openFile(/** @type {File} */ file) {
+    const source = { title: file.name, file: stem(file.name) };
+    return this.#open(source, (signal) => read(file, { name: file.name, signal, onProgress: this.#report(signal) }));
+  }
+
+  /** Reads a file beside the page and makes its mesh. */
+  openAddress(/** @type {string} */ src) {
+    const name = src.split('/').at(-1)?.split(/[?#]/)[0] || 'scan';
+    return this.#open({ title: name, file: stem(name), src }, async (signal) => {
+      const onProgress = this.#report(signal);
+      const bytes = await fetchBytes(ownAddress(src), signal, (share) => onProgress({ stage: 'download', overall: share }));
+      return read(bytes, { name, signal, onProgress });
+    });
+  }
+
+  /** What is kept: what the person has chosen, or what suits the scan. @returns {Target} */
+  get target() {
+    return this.settings.target ?? { kind: 'ratio', value: this.scan ? startingShare(this.scan.count) : TARGETS.ratio.start };
+  }
+
+  /** Works again if the settings ask for something else than the last job made or makes. */
+  async apply() {
+    if (this.scan && JSON.stringify(this.settings.options(this.target)) !== this.#asked) await this.run();
+  }
+
+  /** Reduces and meshes the open scan. */
+  async run() {
+    const scan = this.scan;
+    if (!scan) return;
+    const job = this.#begin('working');
+    this.#asked = JSON.stringify(this.settings.options(this.target));
+    try {
+      const outcome = await this.#make(scan, job.signal);
+      if (job.signal.aborted) return;
+      this.outcome = outcome;
+      this.#end(job, 'made', outcome);
+    } catch (error) {
+      this.#end(job, 'failed', { error, title: scan.title });
+    }
+  }
+
+  /** Stops the running job, if there is one. */
+  cancel() {
+    if (!this.#job) return;
+    this.#job.abort();
+    this.#asked = '';
+    this.#end(this.#job, 'cancelled');
+  }
+
+  /**
+   * How far the mesh is from the scan when other counts of points are kept: one job after the other, until one of
+   * the person's begins. In an engine of its own, so that saving does not wait.
+   * @param {number[]} counts
+   * @param {(count: number, distance: import('pointweave').Distances) => void} found
+   * @returns {Promise<boolean>} whether all were made
+   */
+  async compare(counts, found) {
+    const { scan, settings } = this;
+    if (!scan || this.#job) return false;
+    this.#aside?.abort();
+    const { signal } = (this.#aside = new AbortController());
+    const { reduce: reduction, surface } = settings.options(this.target);
+    const engine = counts.length ? await createEngine() : null;
+    try {
+      for (const count of counts) {
+        const options = { ...surface, reduce: { ...reduction, target: { count } }, ...REMEMBERED, signal };
+        const { report } = await /** @type {import('pointweave').Engine} */ (engine).reconstruct(scan.cloud, options);
+        if (signal.aborted) return false;
+        found(count, report.distance);
+      }
+      return true;
+    } catch (error) {
+      if (signal.aborted) return false;
+      throw error;
+    } finally {
+      await engine?.dispose();
+    }
+  }
+
+  /** Ends {@link compare}. */
+  stopComparing() {
+    this.#aside?.abort();
+    this.#aside = null;
+  }
+
+  /**
+   * The bytes of a file of what was made.
+   * @param {'reduced' | 'mesh'} what
+   * @param {import('pointweave').OutputFormat} format
+   */
+  async file(what, format) {
+    const result = this.outcome?.[what];
+    if (!result) throw new Error(`there is no ${what} to write yet`);
+    return write(result, { format });
+  }
+
+  /**
+   * @param {Source} source
+   * @param {(signal: AbortSignal) => Promise<Opened>} load
+   */
+  async #open(source, load) {
+    const job = this.#begin('reading');
+    try {
+      const cloud = splitOrigin(await load(job.signal));
+      if (job.signal.aborted) return;
+      const count = cloud.positions.length / 3;
+      if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
+      this.scan = { ...source, cloud, count, frame: frameOf(cloud) };
+      this.outcome = null;
+      this.#emit('opened', this.scan);
+    } catch (error) {
+      this.#end(job, 'failed', { error, title: source.title });
+      // The scan that was open stays; the job that this file interrupted goes on.
+      if (this.#job === null && this.scan && !this.outcome) await this.run();
+      return;
+    }
+    await this.run();
+  }
+
+  /** @returns {Promise<Outcome>} */
+  async #make(/** @type {Scan} */ scan, /** @type {AbortSignal} */ signal) {
+    const { reduce: reduction, surface } = this.settings.options(this.target);
+    const options = { ...reduction, assignment: true, cells: true };
+    const onProgress = this.#report(signal);
+    try {
+      const mesh = await reconstruct(scan.cloud, { ...surface, reduce: options, ...REMEMBERED, distances: true, signal, onProgress });
+      return { scan, reduced: mesh.cloud, mesh };
+    } catch (error) {
+      if (signal.aborted || !NO_SURFACE.has(/** @type {any} */ (error).code)) throw error;
+      const reduced = await reduce(scan.cloud, { ...options, signal });
+      this.#emit('failed', { error, title: scan.title });
+      return { scan, reduced, mesh: null };
+    }
+  }
+
+  /** Passes progress on until the job is aborted. */
+  #report(/** @type {AbortSignal} */ signal) {
+    return (/** @type {Pick<Progress, 'overall'> & { stage: string }} */ progress) => {
+      if (!signal.aborted) this.#emit('progress', progress);
+    };
+  }
+
+  #begin(/** @type {State} */ state) {
+    this.#job?.abort();
+    this.stopComparing();
+    this.#job = new AbortController();
+    this.#emit('state', state);
+    return this.#job;
+  }
+
+  /** Reports how a job ended, unless another has taken its place. */
+  #end(/** @type {AbortController} */ job, /** @type {string} */ event, /** @type {unknown} */ detail = undefined) {
+    if (this.#job !== job) return;
+    this.#job = null;
+    this.#emit('state', 'ready');
+    this.#emit(event, detail);
+  }
+
+  #emit(/** @type {string} */ type, /** @type {unknown} */ detail) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+}
+
+/** A file's name without its ending. */
+function stem(/** @type {string} */ name) {
+  return name.replace(/\.[^.]*$/, '') || 'scan';
+}
+
+/** The share to keep of a new scan, until the person has chosen one. */
+function startingShare(/** @type {number} */ count) {
+  const ample = matchMedia(PHONE).matches ? AMPLE_ON_PHONE : AMPLE;
+  const kept = Math.min(ample, Math.max(ENOUGH, count * TARGETS.ratio.start));
+  return Math.min(1, kept / count);
+}

@@ -1,0 +1,50 @@
+import { byId } from '../dom.js';
+import { copyText } from '../clipboard.js';
+
+/** @import { Outcome, Scan } from './session.js' */
+
+/** A link to the same settings, and a snippet that shows the saved mesh in any page. */
+export class Sharing {
+  #link = byId('share-link', HTMLInputElement);
+  #embed = byId('share-embed', HTMLTextAreaElement);
+  #note = byId('share-note', HTMLElement);
+
+  constructor() {
+    for (const [field, button] of /** @type {const} */ ([['share-link', 'copy-link'], ['share-embed', 'copy-embed']])) {
+      const text = /** @type {HTMLInputElement | HTMLTextAreaElement} */ (document.getElementById(field));
+      byId(button, HTMLButtonElement).addEventListener('click', ({ currentTarget }) => {
+        text.select();
+        copyText(text.value, /** @type {HTMLButtonElement} */ (currentTarget));
+      });
+    }
+  }
+
+  /**
+   * @param {string} address
+   * @param {Scan | null} scan
+   * @param {string} file  what the mesh is saved as
+   */
+  show(address, scan, file) {
+    this.#link.value = address;
+    this.#note.textContent = scan && !scan.model && !scan.src
+      ? 'The link holds your settings. The scan itself stays on this device: send it yourself.'
+      : 'Whoever opens it sees this scan with these settings.';
+    this.#embed.value = snippet(file, scan?.title ?? 'A scan');
+  }
+}
+
+/** A page without a bundler needs to be told where the packages are; after `npm install pointweave three` they are there. */
+const IMPORTS = `<script type="importmap">
+{ "imports": {
+  "pointweave/element": "/node_modules/pointweave/element.js",
+  "three": "/node_modules/three/build/three.module.js",
+  "three/addons/": "/node_modules/three/examples/jsm/"
+} }
+</script>
+<script type="module">import 'pointweave/element';</script>
+`;
+
+function snippet(/** @type {string} */ file, /** @type {string} */ title) {
+  const text = (/** @type {string} */ words) => words.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
+  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model" controls></point-weave>`;
+}
