@@ -413,11 +413,11 @@ fn header(
 ) -> std::result::Result<Header, NoPlan> {
     let width = grid.columns.len();
     let Some((line, mut names)) = header_names(before, dialect, width) else {
+        // Without rows the first line that is none says more.
         let last = before.last().filter(|line| {
-            // Without rows the first line that is none says more.
-            width > 0 &&
             let names = dialect.split(&line.bytes).count();
-            !is_comment(&line.bytes)
+            width > 0
+                && !is_comment(&line.bytes)
                 && names == width
                 && line_of(&line.bytes, dialect) == Line::Other
         });
