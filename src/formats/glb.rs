@@ -10,10 +10,11 @@ mod accessor;
 mod materials;
 mod scene;
 
+use super::colors::ColorRange;
 use super::faces::{Face, Faces, NONE, srgb};
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use crate::base::error::Result;
 use accessor::Accessor;
 use materials::Placing;
@@ -62,12 +63,10 @@ impl Parser for Glb {
             if wanted { have.any(|has| has) } else { !parts.is_empty() && have.all(|has| has) }
         };
         let columns = Columns {
-            position: [0, 1, 2],
             normal: has("NORMAL").then_some([3, 4, 5]),
             color: has("COLOR_0").then_some([6, 7, 8]),
-            scalars: Vec::new(),
             colors: ColorRange::Unit,
-            precision: Precision::AsNeeded,
+            ..Columns::xyz()
         };
         let table = table.insert(Table::new(columns, None));
         table.gone = wanted.then(Vec::new);

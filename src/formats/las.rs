@@ -9,9 +9,10 @@
 mod laz;
 mod time;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use crate::base::error::Result;
 use ::las::point::Format;
 use ::las::raw;
@@ -200,12 +201,11 @@ impl Header {
             scalars.push((8, "nir".into()));
         }
         Columns {
-            position: [0, 1, 2],
-            normal: None,
             color: self.format.has_color.then_some([3, 4, 5]),
             scalars,
             colors: ColorRange::Integers,
             precision: Precision::Double,
+            ..Columns::xyz()
         }
     }
 

@@ -12,6 +12,7 @@
     allow(dead_code)
 )]
 
+mod colors;
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
@@ -34,6 +35,9 @@ mod ply;
 mod pictures;
 mod reading;
 mod stations;
+mod options;
+mod preview;
+mod sentinels;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -50,6 +54,9 @@ pub use faces::{FaceMode, Picture, Sampling, Want};
 pub use pictures::decode as decode_picture;
 pub use reading::{Reading, Summary};
 pub use stations::{Run, Stations};
+pub use options::ReadOptions;
+pub use preview::Preview;
+pub use sentinels::LeftOut;
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
@@ -199,6 +206,12 @@ pub struct RawCloud {
     pub faces: u64,
     /// What was made of them.
     pub sampling: Sampling,
+    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`. The first two are `dropped`.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// What the columns of a table of text were taken for, as [`ReadOptions::columns`] says it.
+    pub columns: Vec<String>,
+    /// What else is to be said of the points, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl RawCloud {
@@ -217,6 +230,9 @@ impl RawCloud {
             replaced: 0,
             faces: 0,
             sampling: Sampling::default(),
+            skipped: Vec::new(),
+            columns: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -323,24 +339,32 @@ impl RawCloud {
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    reading(bytes, format)
-        .with_faces(FaceMode::Vertices)
-        .whole(bytes, &mut |_| None)
+    let options = ReadOptions {
+        faces: FaceMode::Vertices,
+        ..ReadOptions::default()
+    };
+    read_with(bytes, format, &options)
 }
 
-/// Reads a file that is wholly in memory; of a file with faces points taken from them ([`FaceMode::Sample`]). `beside` gives the
-/// content of files that the faces name: the material library and the pictures of an OBJ file.
+/// [`read`], with what the caller says of the file; of a file with faces points are taken from them unless told otherwise.
 ///
 /// # Errors
-/// Those of [`read`].
-pub fn read_sampled(
-    bytes: &[u8],
-    format: Format,
-    beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
-) -> Result<RawCloud> {
-    reading(bytes, format).whole(bytes, beside)
+/// Those of [`read`], and [`Error::BadOption`].
+pub fn read_with(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<RawCloud> {
+    read_beside(bytes, format, options, &mut |_| None)
 }
 
-fn reading(bytes: &[u8], format: Format) -> Reading {
+/// [`read_with`], where `beside` gives the content of files that faces name: of an OBJ file its material library and pictures.
+///
+/// # Errors
+/// The same.
+pub fn read_beside(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+    beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<RawCloud> {
     Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(options.clone())?
+        .whole(bytes, beside)
 }

@@ -13,7 +13,7 @@ mod faces;
 use super::faces::Faces;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;
 use faces::ObjFaces;
@@ -182,11 +182,7 @@ impl Obj {
 
 fn columns() -> Columns {
     Columns {
-        position: [0, 1, 2],
-        normal: None,
         color: Some([3, 4, 5]),
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
-        precision: Precision::AsNeeded,
+        ..Columns::xyz()
     }
 }

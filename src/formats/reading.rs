@@ -1,8 +1,11 @@
 //! A file read slice by slice.
 
+use super::Preview;
 use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::input::{Input, Place};
-use super::table::{Block, Table, Verdict};
+use super::options::ReadOptions;
+use super::sentinels::LeftOut;
+use super::table::{Block, Table, Verdict, skipped};
 use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
@@ -31,6 +34,21 @@ pub(super) trait Parser {
     fn take_faces(&mut self) -> Option<Faces> {
         None
     }
+
+    /// What the columns of a table were taken for.
+    fn columns(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The first rows of a table.
+    fn preview(&self) -> Option<Preview> {
+        None
+    }
+
+    /// What else is to be said of the points.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// How far a parser is.
@@ -48,7 +66,6 @@ pub struct Reading {
     format: Option<Format>,
     name: Option<String>,
     size: u64,
-    mode: FaceMode,
     /// Faces that wait for what they need besides.
     faces: Option<Faces>,
     sampled: Sampling,
@@ -58,6 +75,7 @@ pub struct Reading {
     kept: Vec<u8>,
     place: Place,
     done: bool,
+    options: ReadOptions,
 }
 
 /// What is known at the end of a file.
@@ -83,6 +101,14 @@ pub struct Summary {
     pub up: Option<[f64; 3]>,
     /// As in [`RawCloud`].
     pub seen_from_above: bool,
+    /// As in [`RawCloud`], but for what [`Verdict::left_out`] says.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// As in [`RawCloud`].
+    pub columns: Vec<String>,
+    /// As in [`RawCloud`].
+    pub notes: Vec<String>,
+    /// The first rows of a table of text.
+    pub preview: Option<Preview>,
 }
 
 impl Reading {
@@ -92,7 +118,6 @@ impl Reading {
             format,
             name: name.map(String::from),
             size,
-            mode: FaceMode::default(),
             faces: None,
             sampled: Sampling::default(),
             parser: None,
@@ -100,13 +125,18 @@ impl Reading {
             kept: Vec::new(),
             place: Place::default(),
             done: false,
+            options: ReadOptions::default(),
         }
     }
 
-    /// Says what becomes of faces; before the first bytes.
-    pub fn with_faces(mut self, mode: FaceMode) -> Reading {
-        self.mode = mode;
-        self
+    /// With what the caller says of the file.
+    ///
+    /// # Errors
+    /// [`crate::Error::BadOption`].
+    pub fn with_options(mut self, options: ReadOptions) -> Result<Reading> {
+        options.check()?;
+        self.options = options;
+        Ok(self)
     }
 
     /// The next bytes.
@@ -168,11 +198,11 @@ impl Reading {
             return;
         };
         let gone = vertices.gone.take().unwrap_or_default();
-        let (dropped, replaced) = (vertices.dropped, vertices.replaced);
-        let cloud = vertices.finish();
+        let (dropped, replaced, invalid) = (vertices.dropped, vertices.replaced, vertices.invalid);
+        let cloud = vertices.finish(true);
         let (table, sampled) = faces::sample(faces, &cloud, &gone);
         let mut table = table.unwrap_or_else(|| Table::of(cloud));
-        (table.dropped, table.replaced) = (dropped, replaced);
+        (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
         self.sampled = sampled;
         self.table = Some(table);
     }
@@ -189,21 +219,29 @@ impl Reading {
 
     /// What the end of the file told.
     pub fn summary(&self) -> Summary {
-        let none = Verdict {
+        let none = || Verdict {
             narrow: true,
             color_scale: 1.0,
             has_colors: false,
             has_normals: false,
+            left_out: LeftOut::default(),
+            attributes: Vec::new(),
         };
         let table = self.table.as_ref();
         let format = self.format.unwrap_or(Format::Xyz);
+        let parser = self.parser.as_ref();
+        let keep = self.options.keep_sentinels;
         Summary {
             format,
             points: table.map_or(0, |table| table.rows),
-            verdict: table.map_or(none, Table::verdict),
-            dropped: table.map_or(0, |table| table.dropped),
+            verdict: table.map_or_else(none, |table| table.verdict(keep)),
+            dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, |table| table.replaced),
-            faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
+            faces: parser.map_or(0, |parser| parser.faces()),
+            skipped: table.map_or(Vec::new(), |table| skipped(table.dropped, table.invalid)),
+            columns: parser.map_or(Vec::new(), |parser| parser.columns()),
+            notes: parser.map_or(Vec::new(), |parser| parser.notes()),
+            preview: parser.and_then(|parser| parser.preview()),
             sampling: self.sampled.clone(),
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
             up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
@@ -230,17 +268,24 @@ impl Reading {
         self.sample();
         let Summary {
             faces,
+            columns,
+            notes,
             up,
             seen_from_above,
             ..
         } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
-        let mut cloud = self.table.map_or_else(empty, Table::finish);
-        cloud.faces = faces;
-        cloud.up = up;
-        cloud.seen_from_above = seen_from_above;
-        cloud.sampling = self.sampled;
-        Ok(cloud)
+        let keep = self.options.keep_sentinels;
+        let cloud = self.table.map_or_else(empty, |table| table.finish(keep));
+        Ok(RawCloud {
+            faces,
+            columns,
+            notes,
+            up,
+            seen_from_above,
+            sampling: self.sampled,
+            ..cloud
+        })
     }
 
     fn keep(&mut self, bytes: &[u8]) {
@@ -273,7 +318,7 @@ impl Reading {
         };
         let parser = match &mut self.parser {
             Some(parser) => parser,
-            None => self.parser.insert(parser(format, self.mode)?),
+            None => self.parser.insert(parser(format, &self.options)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
@@ -298,13 +343,13 @@ impl Reading {
     }
 }
 
-fn parser(format: Format, mode: FaceMode) -> Result<Box<dyn Parser>> {
-    let faces = || (mode == FaceMode::Sample).then(Faces::default);
+fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
+    let faces = || (options.faces == FaceMode::Sample).then(Faces::default);
     Ok(match format {
         #[cfg(feature = "files")]
         Format::Ply => Box::new(ply::Ply::new(faces())),
         #[cfg(feature = "files")]
-        Format::Xyz => Box::new(xyz::Xyz::default()),
+        Format::Xyz => Box::new(xyz::Xyz::new(options)),
         #[cfg(feature = "files")]
         Format::Pcd => Box::new(pcd::Pcd::default()),
         #[cfg(feature = "files")]

@@ -4,7 +4,7 @@
 use super::faces::{Face, Faces};
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use super::text::{number, words};
 use crate::base::error::Result;
 use std::collections::HashMap;
@@ -231,11 +231,7 @@ impl Stl {
 
 fn columns() -> Columns {
     Columns {
-        position: [0, 1, 2],
-        normal: None,
-        color: None,
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
         precision: Precision::Single,
+        ..Columns::xyz()
     }
 }

@@ -10,7 +10,8 @@ mod paint;
 mod polygons;
 mod spread;
 
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::colors::ColorRange;
+use super::table::{Columns, Table};
 use super::RawCloud;
 use normals::CornerNormals;
 use paint::Painter;
@@ -278,12 +279,11 @@ pub(super) fn sample(
 fn columns(vertices: &RawCloud, colors: bool) -> Columns {
     let attributes = vertices.attributes.iter().enumerate();
     Columns {
-        position: [0, 1, 2],
         normal: Some([3, 4, 5]),
         color: colors.then_some([6, 7, 8]),
         scalars: attributes.map(|(i, attribute)| (9 + i, attribute.name.clone())).collect(),
         colors: ColorRange::Bytes,
-        precision: Precision::AsNeeded,
+        ..Columns::xyz()
     }
 }
 

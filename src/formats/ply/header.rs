@@ -1,7 +1,8 @@
 //! The header: encoding, elements, properties.
 
+use super::super::colors::ColorRange;
 use super::super::input::{Ending, Input};
-use super::super::table::{ColorRange, Columns, Precision};
+use super::super::table::{Columns, Precision};
 use super::super::text::quote;
 use crate::base::error::Result;
 
