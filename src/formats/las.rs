@@ -6,6 +6,7 @@
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
+mod crs;
 mod laz;
 mod time;
 
@@ -14,6 +15,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{Columns, Precision, Table};
 use crate::base::error::Result;
+use crate::cloud::Crs;
 use ::las::point::Format;
 use ::las::raw;
 use laz::Laz;
@@ -21,9 +23,13 @@ use laz::Laz;
 /// The longest of the headers.
 const HEADER: usize = 375;
 
+/// Bytes of variable length records that are waited for.
+const MOST_RECORDS: u64 = 1 << 24;
+
 /// Reads the points.
 #[derive(Default)]
 pub(super) struct Las {
+    crs: Option<Crs>,
     header: Option<Header>,
     laz: Option<Laz>,
     row: u64,
@@ -37,7 +43,14 @@ impl Parser for Las {
                 if input.rest().len() < HEADER && !input.last {
                     return Ok(Step::More);
                 }
-                self.header.insert(Header::read(input)?)
+                let header = Header::read(input)?;
+                // Records of a sane size are waited for, since the points come behind them.
+                let awaited = header.start.min(input.size).min(MOST_RECORDS) as usize;
+                if !input.last && input.rest().len() < awaited {
+                    return Ok(Step::More);
+                }
+                self.crs = crs::read(&header, input.rest());
+                self.header.insert(header)
             }
         };
         let table = table.get_or_insert_with(|| {
@@ -78,6 +91,10 @@ impl Parser for Las {
             self.row += 1;
         }
         Ok(Step::Done)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        self.crs.clone()
     }
 }
 

@@ -47,7 +47,7 @@ mod write;
 mod xyz;
 
 use crate::base::error::{Error, Result};
-use crate::cloud::{Attribute, Cloud, Viewpoints};
+use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
 use crate::pipeline::Surface;
 pub use detect::detect;
 pub use faces::{FaceMode, Picture, Sampling, Want};
@@ -139,6 +139,20 @@ impl Format {
         self == Format::Las
     }
 
+    /// Which way is up, where the format says it.
+    pub fn up(self) -> Option<[f64; 3]> {
+        match self {
+            Format::Las | Format::E57 => Some([0.0, 0.0, 1.0]),
+            Format::Glb => Some([0.0, 1.0, 0.0]),
+            _ => None,
+        }
+    }
+
+    /// What a coordinate is, where the format says it; of LAS and LAZ the file may.
+    pub fn unit(self) -> Option<Unit> {
+        matches!(self, Format::E57 | Format::Glb).then_some(Unit::Metre)
+    }
+
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).
     pub fn from_name(name: &str) -> Option<Format> {
         let extension = name.rsplit('.').next().unwrap_or(name).to_lowercase();
@@ -198,6 +212,10 @@ pub struct RawCloud {
     pub up: Option<[f64; 3]>,
     /// Whether all was seen from above, as airborne scans are.
     pub seen_from_above: bool,
+    /// What a coordinate is.
+    pub unit: Option<Unit>,
+    /// The reference system of world coordinates.
+    pub crs: Option<Crs>,
     /// Rows left out because a coordinate was NaN or infinite.
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
@@ -226,6 +244,8 @@ impl RawCloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            unit: None,
+            crs: None,
             dropped: 0,
             replaced: 0,
             faces: 0,
@@ -249,12 +269,15 @@ impl RawCloud {
             viewpoints: cloud.viewpoints.clone(),
             up: cloud.up.map(|up| up.as_dvec3().to_array()),
             seen_from_above: cloud.seen_from_above,
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(cloud.positions_f64()))
         }
     }
 
     /// The vertices of a mesh, in double precision; its triangles are [`Surface::indices`].
     pub fn of_surface(surface: &Surface) -> RawCloud {
+        let cloud = &surface.cloud.reduced.cloud;
         RawCloud {
             colors: surface.colors.as_ref().map(|c| c.as_flattened().to_vec()),
             normals: Some(
@@ -266,7 +289,10 @@ impl RawCloud {
                     .collect(),
             ),
             attributes: surface.attributes.clone(),
-            origin: surface.cloud.reduced.cloud.origin,
+            origin: cloud.origin,
+            up: cloud.up.map(|up| up.as_dvec3().to_array()),
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(surface.positions_f64()))
         }
     }
@@ -302,6 +328,10 @@ impl RawCloud {
             cloud = cloud.with_up(up)?;
         }
         cloud.origin = self.origin;
+        cloud.unit = self.unit;
+        cloud.crs = self.crs.clone();
+        // Points of faces are no measurements, and the results say so.
+        cloud.faces = if self.sampling.points > 0 { self.faces } else { 0 };
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 

@@ -10,6 +10,7 @@ use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
 use crate::base::error::Result;
+use crate::cloud::{Crs, Unit};
 
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
@@ -32,6 +33,11 @@ pub(super) trait Parser {
 
     /// The faces over the rows of the table, once all was parsed and where they are wanted.
     fn take_faces(&mut self) -> Option<Faces> {
+        None
+    }
+
+    /// The reference system of the coordinates.
+    fn crs(&self) -> Option<Crs> {
         None
     }
 
@@ -101,6 +107,10 @@ pub struct Summary {
     pub up: Option<[f64; 3]>,
     /// As in [`RawCloud`].
     pub seen_from_above: bool,
+    /// As in [`RawCloud`].
+    pub unit: Option<Unit>,
+    /// As in [`RawCloud`].
+    pub crs: Option<Crs>,
     /// As in [`RawCloud`], but for what [`Verdict::left_out`] says.
     pub skipped: Vec<(&'static str, u64)>,
     /// As in [`RawCloud`].
@@ -231,6 +241,7 @@ impl Reading {
         let format = self.format.unwrap_or(Format::Xyz);
         let parser = self.parser.as_ref();
         let keep = self.options.keep_sentinels;
+        let crs = parser.and_then(|parser| parser.crs());
         Summary {
             format,
             points: table.map_or(0, |table| table.rows),
@@ -244,8 +255,22 @@ impl Reading {
             preview: parser.and_then(|parser| parser.preview()),
             sampling: self.sampled.clone(),
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
-            up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
+            up: self.up(format),
             seen_from_above: format.is_airborne(),
+            unit: crs.as_ref().and_then(Crs::unit).or(format.unit()),
+            crs,
+        }
+    }
+
+    /// Which way is up: as the format has it. Of a PCD file, which says nothing, z as robots have it, but where all points lie before
+    /// a camera at the origin that looks along z, -y as such cameras have it.
+    fn up(&self, format: Format) -> Option<[f64; 3]> {
+        match (format, &self.table) {
+            (Format::Pcd, Some(table)) if table.rows > 0 => Some(match table.before_camera {
+                true => [0.0, -1.0, 0.0],
+                false => [0.0, 0.0, 1.0],
+            }),
+            _ => format.up(),
         }
     }
 
@@ -272,6 +297,8 @@ impl Reading {
             notes,
             up,
             seen_from_above,
+            unit,
+            crs,
             ..
         } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
@@ -283,6 +310,8 @@ impl Reading {
             notes,
             up,
             seen_from_above,
+            unit,
+            crs,
             sampling: self.sampled,
             ..cloud
         })

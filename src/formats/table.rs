@@ -144,6 +144,8 @@ pub(super) struct Table {
     used: Vec<bool>,
     /// A normal was not zero.
     normals_used: bool,
+    /// All rows lie within 45° of the z axis from the origin.
+    pub(super) before_camera: bool,
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
@@ -171,6 +173,7 @@ impl Table {
             sentinels: Sentinels::default(),
             tally: Tally::default(),
             normals_used: false,
+            before_camera: true,
             colors_said: true,
             normals_said: true,
             stations: Stations::default(),
@@ -232,6 +235,8 @@ impl Table {
             return;
         }
         self.rows += 1;
+        let [x, y, z] = position;
+        self.before_camera &= x.abs() < z && y.abs() < z;
         match &mut self.block.positions {
             Positions::F32(values) => values.extend(position.map(|x| x as f32)),
             Positions::F64(values) => values.extend(position),

@@ -215,7 +215,7 @@ fn surface(
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
     let surface_report = SurfaceReport {
         reduce: ReduceReport {
-            doubts: report::doubts(&signs.account),
+            doubts: [report.doubts.clone(), report::doubts(&signs.account)].concat(),
             ..report.clone()
         },
         triangles: mesh.triangles.len(),

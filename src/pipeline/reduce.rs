@@ -1,5 +1,6 @@
 //! From a cloud to a reduced cloud.
 
+use crate::report;
 use crate::base::clock::Clock;
 use crate::base::error::Result;
 use crate::base::par;
@@ -102,6 +103,7 @@ pub(crate) fn reduce_report(
             .filter(|reason| !reason.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
+        doubts: report::doubts_of_faces(reduced.cloud.faces),
         ..Default::default()
     }
 }

@@ -23,6 +23,18 @@ const AGREE: f64 = 0.8;
 /// [`crate::orient::account::WeakestTie::strength`] under which a side is as good as a guess.
 const WEAK: f64 = 0.3;
 
+/// What is to be said of points that were taken from `faces`, where they were.
+pub(crate) fn doubts_of_faces(faces: u64) -> Vec<Doubt> {
+    if faces == 0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "sampled-from-faces",
+        message: format!("The file is a mesh: its points were taken from {faces} faces, evenly over their area."),
+        share: None,
+    }]
+}
+
 /// What may be wrong with the sides.
 pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
     let mut doubts = Vec::new();
