@@ -10,23 +10,24 @@ import { UsageError } from './usage.js';
  * @typedef {object} Flag
  * @property {string} name as it is typed, without the dashes
  * @property {string} key the option's name
- * @property {'target' | 'reduce' | 'reconstruct' | 'write' | 'none'} group
+ * @property {'target' | 'reduce' | 'reconstruct' | 'read' | 'write' | 'none'} group
  * @property {Rule} rule
  * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
  */
 
 /** Not flags: what has one of another shape, what the file's name says, and what no file holds. */
-const LEFT_OUT = { reduce: ['target', 'assignment', 'cells'], reconstruct: ['reduce', 'distances', 'keep'], write: ['format'] };
+const LEFT_OUT = { reduce: ['target', 'assignment', 'cells'], reconstruct: ['reduce', 'distances', 'keep'], read: ['name', 'format', 'beside'], write: ['format'] };
 
 /**
  * @param {Command} command
  * @returns {Flag[]}
  */
 export function flagsOf(command) {
-  if (command === 'inspect') return [];
+  const read = flags('read', TABLES.read, LEFT_OUT.read);
+  if (command === 'inspect') return read;
   const reduce = [...flags('target', TARGETS, []), ...flags('reduce', TABLES.reduce, LEFT_OUT.reduce)];
   const surface = [none, ...flags('reconstruct', TABLES.reconstruct, LEFT_OUT.reconstruct)];
-  return [...reduce, ...(command === 'reconstruct' ? surface : []), ...flags('write', TABLES.write, LEFT_OUT.write)];
+  return [...read, ...reduce, ...(command === 'reconstruct' ? surface : []), ...flags('write', TABLES.write, LEFT_OUT.write)];
 }
 
 /** `reduce: false`. @type {Flag} */
@@ -43,7 +44,9 @@ function flags(group, table, leftOut) {
   return keys.map((key) => {
     const rule = table[key];
     const kind = key === 'attributes' ? 'list' : rule.accepts(true, '') ? 'switch' : 'value';
-    return { name: kebab(key), key, group, rule, kind };
+    // What a file says of itself and what is written are two things: `--up` and `--to-up`.
+    const name = group === 'write' && (key === 'up' || key === 'unit') ? `to-${key}` : kebab(key);
+    return { name, key, group, rule, kind };
   });
 }
 
@@ -74,7 +77,7 @@ export function parserOptions(flags) {
  */
 export function optionsFrom(command, values) {
   /** @type {Record<Flag['group'], Record<string, any>>} */
-  const given = { target: {}, reduce: {}, reconstruct: {}, write: {}, none: {} };
+  const given = { target: {}, reduce: {}, reconstruct: {}, read: {}, write: {}, none: {} };
   for (const flag of flagsOf(command)) {
     const value = valueOf(flag, values);
     if (value !== undefined) given[flag.group][flag.key] = value;
@@ -85,7 +88,7 @@ export function optionsFrom(command, values) {
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, write: given.write };
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, read: given.read, write: given.write };
 }
 
 /** @param {Flag} flag @param {Record<string, any>} values */
