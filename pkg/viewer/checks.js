@@ -1,6 +1,6 @@
 /** What is handed to a viewer: wrong types, lengths and corners are errors, not a picture of something else. */
-import { badInput, expectArray } from '../engine/clouds.js';
 import { PointweaveError } from '../engine/errors.js';
+import { badInput, expectArray } from '../engine/inputs.js';
 
 /** @import { Drawable } from '../viewer.js' */
 
