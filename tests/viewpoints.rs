@@ -255,11 +255,21 @@ fn a_normal_that_is_zero_or_not_finite_is_none() {
     let cloud = || Cloud::from_f32(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
     let normals = [0.0, 0.0, 2.0, f32::NAN, 1.0, 0.0, 0.0, 0.0, 0.0];
     let expected = vec![glam::Vec3::Z, glam::Vec3::ZERO, glam::Vec3::ZERO];
-    assert_eq!(cloud().with_normals(&normals).unwrap().normals, Some(expected));
+    assert_eq!(
+        cloud().with_normals(&normals).unwrap().normals,
+        Some(expected)
+    );
     for none in [0.0, f32::NAN, f32::INFINITY] {
-        assert_eq!(cloud().with_normals(&[none; 9]).unwrap().normals, None, "{none}");
+        assert_eq!(
+            cloud().with_normals(&[none; 9]).unwrap().normals,
+            None,
+            "{none}"
+        );
     }
-    assert_eq!(cloud().with_normals(&[1.0; 6]).unwrap_err().code(), "bad-length");
+    assert_eq!(
+        cloud().with_normals(&[1.0; 6]).unwrap_err().code(),
+        "bad-length"
+    );
 }
 
 #[test]
@@ -269,7 +279,10 @@ fn a_selection_keeps_what_is_known_of_its_points() {
     let of = [0, 1, Viewpoints::UNKNOWN, 1, 0, 0, 1, 1, 0, 0];
     let cloud = Cloud::from_f64(&positions).unwrap();
     let cloud = cloud.with_viewpoints(&views, Some(&of)).unwrap();
-    let cloud = cloud.with_up([0.0, 0.0, 3.0]).unwrap().with_seen_from_above(true);
+    let cloud = cloud
+        .with_up([0.0, 0.0, 3.0])
+        .unwrap()
+        .with_seen_from_above(true);
     let some = cloud.select(&[1, 2, 4]).unwrap();
     let viewpoints = some.viewpoints.unwrap();
     assert_eq!(viewpoints.of, Some(vec![1, Viewpoints::UNKNOWN, 0]));
