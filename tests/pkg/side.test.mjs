@@ -233,8 +233,8 @@ test('flip turns a mesh, or one piece of it with the points near it', async () =
 const said = (...args) => parse(['reconstruct', 'a.ply', '-o', 'b.glb', ...args]).cloud;
 
 test('the command line says where a scan was seen from', () => {
-  assert.deepEqual(said(), { viewpoints: [], up: undefined });
-  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined });
+  assert.deepEqual(said(), { viewpoints: [], up: undefined, unit: undefined });
+  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined, unit: undefined });
   for (const [word, axis] of [['y', [0, 1, 0]], ['-z', [0, 0, -1]], ['1,2,2', [1, 2, 2]]]) assert.deepEqual(said(`--up=${word}`).up, axis);
   assert.deepEqual(parse(['reconstruct', 'a.ply', '-o', 'b.glb', '--orientation', 'inward', '--flip']).own, { orientation: 'inward', flip: true });
   for (const [args, line] of [
