@@ -90,7 +90,11 @@ export type DoubtCode =
   /** A region looks away from where it was seen from. */
   | 'contradicts-sensor'
   /** A large part hangs on little, and may be the wrong way round. */
-  | 'weak-tie';
+  | 'weak-tie'
+  /** The mesh is not close to the points: too few of them, or some lie far from the rest. */
+  | 'far-from-points'
+  /** x and y look like degrees and z like metres. */
+  | 'degrees-as-lengths';
 
 /** What ran, where and for how long. */
 export interface RunReport {
@@ -188,7 +192,7 @@ export interface OrientationReport {
   weakestTie?: {
     /** Share that would turn. */
     share: number;
-    /** What holds it: neighbouring sub-domains of one sheet have about 0.5. */
+    /** What holds it to the others, by its size: parts of one smooth sheet have 1.5 and more. */
     strength: number;
   };
 }
@@ -381,6 +385,12 @@ export const sample: Engine['sample'];
 
 /** Resolves when the engine is ready to compute. */
 export function createEngine(options?: EngineOptions): Promise<Engine>;
+
+/**
+ * The mesh with its other side out: triangles and normals, those of its cloud too. With `triangle`, an index, only the piece that this
+ * triangle belongs to. The other arrays are those of `mesh`.
+ */
+export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: number }): T;
 
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;

@@ -1,7 +1,10 @@
 //! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
 
+pub(crate) mod copies;
+pub mod morton;
 pub mod neighborhood;
 pub mod octree;
+pub mod queries;
 mod viewpoints;
 
 use crate::base::error::{Error, Result};

@@ -1,12 +1,15 @@
 //! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
 
 pub(crate) mod borders;
+pub mod clustering;
 pub mod clusters;
 pub mod density;
+pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
 pub mod paper;
 pub mod placement;
+pub mod shares;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
 
@@ -22,10 +25,12 @@ use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
-use crate::reduce::clusters::{SHARES, Samples, Settling, Shares};
+use crate::reduce::clustering::Clustering;
+use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::placement::{Members, Placed};
+use crate::reduce::shares::{SHARES, Shares};
 use crate::reduce::surroundings::Around;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
@@ -69,23 +74,6 @@ pub struct ReduceStats {
     /// Coefficient of variation of (distance of a reduced point to its nearest / wanted spacing); 0 is perfectly even.
     pub evenness: f64,
     /// Input points that were kept as they are (the paper's "typical data with sharp feature").
-    pub kept: usize,
-}
-
-/// Cluster centres and how the points are shared among them, in the octree's order: what both methods hand on.
-#[derive(Debug, Clone)]
-pub struct Clustering {
-    /// Centres, in the unit frame.
-    pub centers: Vec<Vec3>,
-    /// Memberships of every point in its nearest centres.
-    pub shares: Vec<Shares>,
-    /// Wanted spacing at every point.
-    pub spacing: Vec<f32>,
-    /// Sub-domains, as ranges of the octree's points.
-    pub cells: Vec<Range<usize>>,
-    /// Sweeps.
-    pub iterations: usize,
-    /// Points kept as they are.
     pub kept: usize,
 }
 
