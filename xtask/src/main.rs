@@ -1,4 +1,4 @@
-//! The project's commands: `cargo xtask build | serve | test | bench | setup`.
+//! The project's commands: `cargo xtask build | page | serve | test | bench | setup`.
 //!
 //! Every command first sets up what it needs (`setup.rs`) and says what it installs before it does.
 //! A failure is one sentence that says what to do.
@@ -29,7 +29,8 @@ Usage: cargo xtask <command> [options]
 
   build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
   options               what the table of options says, and nothing else
-  serve [--port N]      the builds and the page, served on localhost (default port 8080)
+  page                  the builds and the page, into www/dist/, for any static server
+  serve [--port N]      the same, served on localhost (default port 8080) as soon as there is something to see
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,element,page
   test PART [FILE [NAME]]
@@ -61,6 +62,9 @@ fn run(args: &[String]) -> Result<()> {
     match command {
         "build" => expect_no_options(arguments).and_then(|()| build::build()),
         "options" => expect_no_options(arguments).and_then(|()| options::write()),
+        "page" => expect_no_options(arguments)
+            .and_then(|()| build::ensure())
+            .and_then(|()| page::ensure()),
         "serve" => serve::serve(port(arguments)?),
         "test" => test::test(&test::Selection::parse(arguments)?),
         "bench" => bench::bench(arguments),
