@@ -26,15 +26,21 @@ pub enum Build {
     Las,
     /// The reader of E57 alone.
     E57,
+    /// The decoders of textures' pictures alone.
+    Pictures,
+    /// The writers that are not in the engine, alone.
+    Exports,
 }
 
 impl Build {
-    pub const ALL: [Build; 5] = [
+    pub const ALL: [Build; 7] = [
         Build::Single,
         Build::Threads,
         Build::Files,
         Build::Las,
         Build::E57,
+        Build::Pictures,
+        Build::Exports,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -46,6 +52,8 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
         }
     }
 
@@ -57,6 +65,8 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
         }
     }
 
@@ -64,7 +74,7 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 => {
+            Self::Single | Self::Files | Self::Las | Self::E57 | Self::Pictures | Self::Exports => {
                 strings(&["-Ctarget-feature=+simd128"])
             }
             Self::Threads => {
