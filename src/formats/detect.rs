@@ -1,6 +1,8 @@
 //! What format a file is of.
 
 use super::Format;
+#[cfg(feature = "files")]
+use super::reading::MARK;
 use super::text::quote;
 #[cfg(feature = "files")]
 use super::{obj, off, pcd, ply, stl, xyz};
@@ -51,14 +53,15 @@ pub(super) fn detect_head(head: &[u8], size: u64, name: Option<&str>) -> Result<
 /// The format of a file without a signature, by what its first lines say or by its size.
 #[cfg(feature = "files")]
 fn by_look(head: &[u8], size: u64) -> Option<Format> {
+    let head = head.strip_prefix(MARK).unwrap_or(head);
     type Look = fn(&[u8], u64) -> bool;
     let looks: [(Look, Format); 6] = [
         (|head, _| ply::looks_like(head), Format::Ply),
         (|head, _| pcd::looks_like(head), Format::Pcd),
         (stl::looks_like, Format::Stl),
         (|head, _| off::looks_like(head), Format::Off),
-        (|head, _| xyz::looks_like(head), Format::Xyz),
         (|head, _| obj::looks_like(head), Format::Obj),
+        (|head, _| xyz::looks_like(head), Format::Xyz),
     ];
     let found = looks.iter().find(|(look, _)| look(head, size));
     found.map(|(_, format)| *format)

@@ -36,6 +36,8 @@ mod preview;
 mod reading;
 mod sentinels;
 #[cfg(feature = "files")]
+mod splats;
+#[cfg(feature = "files")]
 mod stl;
 mod table;
 mod text;
@@ -126,6 +128,12 @@ impl Format {
             Format::Las => &["las", "laz"],
             Format::E57 => &["e57"],
         }
+    }
+
+    /// Whether it starts with text, before which editors put a byte order mark.
+    fn is_text(self) -> bool {
+        use Format::{Obj, Off, Pcd, Ply, Stl, Xyz};
+        matches!(self, Ply | Xyz | Pcd | Obj | Off | Stl)
     }
 
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).

@@ -10,6 +10,9 @@ use super::{Format, Positions, RawCloud, detect};
 use super::{glb, obj, off, pcd, ply, stl, xyz};
 use crate::base::error::Result;
 
+/// The byte order mark of UTF-8.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
 
@@ -227,11 +230,17 @@ impl Reading {
         let Some(format) = self.tell(bytes, last)? else {
             return Ok(0);
         };
+        if self.place.byte == 0 && bytes.len() < MARK.len() && !last {
+            return Ok(0);
+        }
         let parser = match &mut self.parser {
             Some(parser) => parser,
             None => self.parser.insert(parser(format, &self.options)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
+        if self.place.byte == 0 && format.is_text() && bytes.starts_with(MARK) {
+            input.skip(MARK.len() as u64);
+        }
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
         self.place = input.place;
         Ok(if self.done {

@@ -206,7 +206,8 @@ impl Table {
             normals.extend(normal);
         }
         if let (Some(color), Some(colors)) = (self.columns.color, &mut self.block.colors) {
-            let color = color.map(&mut finite);
+            let range = self.columns.colors;
+            let color = color.map(|column| range.kept(finite(column)));
             match colors {
                 ColorValues::Bytes(bytes) => bytes.extend(color.map(|c| c as u8)),
                 ColorValues::Numbers(numbers) => {
