@@ -206,7 +206,7 @@ fn read_scan(
         };
         if let Some(Transform { translation, .. }) = &scan.transform {
             let sensor = [translation.x, translation.y, translation.z];
-            table.sentinels.seen_from(sensor);
+            table.seen_from(Some(sensor));
         }
         let mut row = vec![0.0; KNOWN + names.len()];
         for point in points {

@@ -8,16 +8,23 @@
 
 // A build with one feature's readers leaves parts unused of what they share.
 #![cfg_attr(
-    not(all(feature = "e57", feature = "files", feature = "las")),
-    allow(dead_code)
+    not(all(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )),
+    allow(dead_code, unused_variables)
 )]
 
 mod colors;
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
-#[cfg(feature = "files")]
+#[cfg(feature = "packed")]
 mod glb;
+#[cfg(feature = "files")]
+mod grid;
 mod input;
 #[cfg(feature = "las")]
 mod las;
@@ -32,10 +39,14 @@ mod pcd;
 #[cfg(feature = "files")]
 mod ply;
 mod options;
+#[cfg(feature = "packed")]
+mod packed;
 mod preview;
+#[cfg(feature = "files")]
+mod ptx;
 mod reading;
 mod sentinels;
-#[cfg(feature = "files")]
+#[cfg(any(feature = "files", feature = "packed"))]
 mod splats;
 #[cfg(feature = "files")]
 mod stl;
@@ -50,6 +61,8 @@ use crate::cloud::{Attribute, Cloud};
 use crate::pipeline::Surface;
 pub use detect::detect;
 pub use options::ReadOptions;
+#[cfg(feature = "packed")]
+pub use packed::{Archive, Entry};
 pub use preview::Preview;
 pub use reading::{Reading, Summary};
 pub use sentinels::LeftOut;
@@ -77,11 +90,23 @@ pub enum Format {
     Las,
     /// ASTM E2807.
     E57,
+    /// Leica's PTX: scans as text, each at its pose.
+    Ptx,
+    /// ESRI's ASCII raster: an elevation grid.
+    Grid,
+    /// GeoTIFF with one band: an elevation grid.
+    Tiff,
+    /// 3MF: its vertices.
+    ThreeMf,
+    /// Gaussian splats of 32 bytes: their centres.
+    Splat,
+    /// Gaussian splats, packed: their centres.
+    Spz,
 }
 
 impl Format {
     /// All formats that are read.
-    pub const ALL: [Format; 9] = [
+    pub const ALL: [Format; 15] = [
         Format::Ply,
         Format::Xyz,
         Format::Pcd,
@@ -91,6 +116,12 @@ impl Format {
         Format::Glb,
         Format::Las,
         Format::E57,
+        Format::Ptx,
+        Format::Grid,
+        Format::Tiff,
+        Format::ThreeMf,
+        Format::Splat,
+        Format::Spz,
     ];
     /// Those that are written, too, and read back to the same bits.
     pub const WRITTEN: [Format; 2] = [Format::Ply, Format::Xyz];
@@ -112,6 +143,12 @@ impl Format {
             Format::Glb => "GLB",
             Format::Las => "LAS",
             Format::E57 => "E57",
+            Format::Ptx => "PTX",
+            Format::Grid => "ASCII grid",
+            Format::Tiff => "GeoTIFF",
+            Format::ThreeMf => "3MF",
+            Format::Splat => "splat",
+            Format::Spz => "SPZ",
         }
     }
 
@@ -127,13 +164,20 @@ impl Format {
             Format::Glb => &["glb"],
             Format::Las => &["las", "laz"],
             Format::E57 => &["e57"],
+            Format::Ptx => &["ptx"],
+            // Those that end with .asc are told from rows of points by their content.
+            Format::Grid => &["grid", "agr", "grd"],
+            Format::Tiff => &["tif", "tiff"],
+            Format::ThreeMf => &["3mf"],
+            Format::Splat => &["splat"],
+            Format::Spz => &["spz"],
         }
     }
 
     /// Whether it starts with text, before which editors put a byte order mark.
     fn is_text(self) -> bool {
-        use Format::{Obj, Off, Pcd, Ply, Stl, Xyz};
-        matches!(self, Ply | Xyz | Pcd | Obj | Off | Stl)
+        use Format::{Grid, Obj, Off, Pcd, Ply, Ptx, Stl, Xyz};
+        matches!(self, Ply | Xyz | Pcd | Obj | Off | Stl | Ptx | Grid)
     }
 
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).

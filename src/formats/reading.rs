@@ -4,10 +4,10 @@ use super::Preview;
 use super::input::{Input, Place};
 use super::options::ReadOptions;
 use super::sentinels::LeftOut;
-use super::table::{Block, Table, Verdict, skipped};
+use super::table::{Block, Table, Verdict};
 use super::{Format, Positions, RawCloud, detect};
 #[cfg(feature = "files")]
-use super::{glb, obj, off, pcd, ply, stl, xyz};
+use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
 
 /// The byte order mark of UTF-8.
@@ -172,7 +172,7 @@ impl Reading {
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, Table::replaced),
             faces: parser.map_or(0, |parser| parser.faces()),
-            skipped: table.map_or(Vec::new(), |table| skipped(table.dropped, table.invalid)),
+            skipped: table.map_or(Vec::new(), |table| table.skipped([0; 2])),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
             preview: parser.and_then(|parser| parser.preview()),
@@ -275,12 +275,29 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
         #[cfg(feature = "files")]
         Format::Stl => Box::new(stl::Stl::default()),
         #[cfg(feature = "files")]
-        Format::Glb => Box::new(glb::Glb::default()),
+        Format::Ptx => Box::new(ptx::Ptx::new(options)),
+        #[cfg(feature = "files")]
+        Format::Grid => Box::new(grid::Raster::new(options)),
+        #[cfg(feature = "files")]
+        Format::Splat => Box::new(splats::Splats),
+        #[cfg(feature = "packed")]
+        Format::Spz => Box::new(super::packed::Spz),
+        #[cfg(feature = "packed")]
+        Format::Tiff => Box::new(super::packed::Tiff::new(options)),
+        #[cfg(feature = "packed")]
+        Format::ThreeMf => Box::new(super::packed::ThreeMf::default()),
+        #[cfg(feature = "packed")]
+        Format::Glb => Box::new(super::glb::Glb::default()),
         #[cfg(feature = "las")]
         Format::Las => Box::new(super::las::Las::default()),
         #[cfg(feature = "e57")]
         Format::E57 => Box::new(super::e57::E57::default()),
-        #[cfg(not(all(feature = "e57", feature = "files", feature = "las")))]
+        #[cfg(not(all(
+            feature = "e57",
+            feature = "files",
+            feature = "las",
+            feature = "packed"
+        )))]
         other => {
             return Err(crate::Error::UnsupportedFile {
                 format: other.title(),

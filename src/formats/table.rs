@@ -151,6 +151,9 @@ pub(super) struct Table {
     pub(super) dropped: usize,
     /// Rows left out because the file marks them as invalid.
     pub(super) invalid: usize,
+    /// Rows left out because the file says that they have no height, or no return.
+    pub(super) no_data: u64,
+    pub(super) no_returns: u64,
     replaced: usize,
 }
 
@@ -172,6 +175,8 @@ impl Table {
             normals_said: true,
             dropped: 0,
             invalid: 0,
+            no_data: 0,
+            no_returns: 0,
             replaced: 0,
         }
     }
@@ -270,6 +275,24 @@ impl Table {
         }
     }
 
+    /// The rows from here on were seen from `position`; `None` where the file does not tell.
+    pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
+        if let Some(position) = position {
+            self.sentinels.seen_from(position);
+        }
+    }
+
+    /// Rows that were left out, by why; `later` had no data, or no return, as the end told.
+    pub(super) fn skipped(&self, later: [u64; 2]) -> Vec<(&'static str, u64)> {
+        let counts = [
+            ("not-finite", self.dropped as u64),
+            ("invalid", self.invalid as u64),
+            ("no-data", self.no_data + later[0]),
+            ("no-return", self.no_returns + later[1]),
+        ];
+        counts.into_iter().filter(|(_, count)| *count > 0).collect()
+    }
+
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub(super) fn replaced(&self) -> usize {
         self.replaced
@@ -306,23 +329,10 @@ impl Table {
             });
         cloud.attributes = attributes;
         cloud.dropped = self.dropped + self.invalid;
-        cloud.skipped = skipped(self.dropped, self.invalid);
-        cloud.skipped.extend(
-            [("no-data", no_data), ("no-return", no_return)]
-                .into_iter()
-                .filter(|(_, count)| *count > 0),
-        );
+        cloud.skipped = self.skipped([no_data, no_return]);
         cloud.replaced = self.replaced;
         cloud
     }
-}
-
-/// Rows that were left out as they came, by why.
-pub(super) fn skipped(dropped: usize, invalid: usize) -> Vec<(&'static str, u64)> {
-    [("not-finite", dropped as u64), ("invalid", invalid as u64)]
-        .into_iter()
-        .filter(|(_, count)| *count > 0)
-        .collect()
 }
 
 impl Block {

@@ -23,15 +23,18 @@ pub enum Build {
     Las,
     /// The reader of E57 alone.
     E57,
+    /// The readers of what is packed as a whole.
+    Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 5] = [
+    pub const ALL: [Build; 6] = [
         Build::Single,
         Build::Threads,
         Build::Files,
         Build::Las,
         Build::E57,
+        Build::Packed,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -43,6 +46,7 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Packed => "packed",
         }
     }
 
@@ -54,6 +58,7 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Packed => "packed",
         }
     }
 
@@ -61,7 +66,7 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 => {
+            Self::Single | Self::Files | Self::Las | Self::E57 | Self::Packed => {
                 strings(&["-Ctarget-feature=+simd128"])
             }
             Self::Threads => {
@@ -139,7 +144,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: pkg/wasm/single, threads, files, las, e57 and packed.
 pub fn build() -> Result<()> {
     let toolchain = toolchain::wasm()?;
     let tools = setup::wasm_tools()?;
