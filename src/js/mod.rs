@@ -10,7 +10,10 @@ mod viewpoints;
 pub mod wasm;
 #[cfg(feature = "pictures")]
 pub mod wasm_pictures;
-#[cfg(all(not(feature = "engine"), any(feature = "e57", feature = "files", feature = "las")))]
+#[cfg(all(
+    not(feature = "engine"),
+    any(feature = "e57", feature = "files", feature = "las", feature = "packed")
+))]
 pub mod wasm_read;
 #[cfg(any(feature = "engine", feature = "exports"))]
 pub mod wasm_write;

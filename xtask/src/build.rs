@@ -27,10 +27,12 @@ pub enum Build {
     Pictures,
     /// The writers that are not in the engine, alone.
     Exports,
+    /// The readers of what is packed as a whole.
+    Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 7] = [
+    pub const ALL: [Build; 8] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -38,6 +40,7 @@ impl Build {
         Build::E57,
         Build::Pictures,
         Build::Exports,
+        Build::Packed,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -51,6 +54,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -64,6 +68,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -71,7 +76,13 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 | Self::Pictures | Self::Exports => {
+            Self::Single
+            | Self::Files
+            | Self::Las
+            | Self::E57
+            | Self::Pictures
+            | Self::Exports
+            | Self::Packed => {
                 strings(&["-Ctarget-feature=+simd128"])
             }
             Self::Threads => {
@@ -149,7 +160,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: pkg/wasm/single, threads, files, las, e57 and packed.
 pub fn build() -> Result<()> {
     let toolchain = toolchain::wasm()?;
     let tools = setup::wasm_tools()?;
