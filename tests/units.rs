@@ -3,6 +3,7 @@
 
 use pointweave::cloud::{Attribute, Crs, Unit, Viewpoints};
 use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, read, write};
+use pointweave::progress::Silent;
 use pointweave::{ReduceParams, SurfaceParams};
 
 const UP_Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -122,10 +123,10 @@ fn cap() -> RawCloud {
 #[test]
 fn results_keep_them() {
     let cloud = cap();
-    let reduced = pointweave::reduce(&cloud.to_cloud().unwrap(), &ReduceParams::default(), &mut ()).unwrap();
+    let reduced = pointweave::reduce(&cloud.to_cloud().unwrap(), &ReduceParams::default(), &mut Silent).unwrap();
     let back = RawCloud::of_cloud(&reduced.reduced.cloud);
     assert_eq!((back.up, back.unit, &back.crs), (cloud.up, cloud.unit, &cloud.crs));
-    let surface = pointweave::reconstruct(&cloud.to_cloud().unwrap(), &SurfaceParams::default(), &mut ()).unwrap();
+    let surface = pointweave::reconstruct(&cloud.to_cloud().unwrap(), &SurfaceParams::default(), &mut Silent).unwrap();
     let back = RawCloud::of_surface(&surface);
     assert_eq!((back.up, back.unit, &back.crs), (cloud.up, cloud.unit, &cloud.crs));
     assert!(surface.report.reduce.doubts.iter().all(|doubt| doubt.code != "sampled-from-faces"));
@@ -136,7 +137,7 @@ fn points_of_faces_are_doubted_in_the_reports() {
     let file = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
     let options = pointweave::formats::ReadOptions::default();
     let cloud = pointweave::formats::read_with(file.as_bytes(), Format::Off, &options).unwrap();
-    let reduced = pointweave::reduce(&cloud.to_cloud().unwrap(), &ReduceParams::default(), &mut ()).unwrap();
+    let reduced = pointweave::reduce(&cloud.to_cloud().unwrap(), &ReduceParams::default(), &mut Silent).unwrap();
     let doubt = &reduced.report.doubts[0];
     assert_eq!(doubt.code, "sampled-from-faces");
     assert!(doubt.message.contains("4 faces"), "{}", doubt.message);
@@ -204,7 +205,20 @@ fn geotiff_keys_go_on() {
 fn a_3mf_wants_triangles() {
     assert_eq!(write(&scan(), None, Output::ThreeMf, WriteOptions::default()).unwrap_err().code(), "needs-triangles");
     let file = write(&scan(), Some(&[0, 1, 2]), Output::ThreeMf, WriteOptions::default()).unwrap();
-    assert!(file.starts_with(b"PK\x03\x04"));
+    let back = read(&file, Format::ThreeMf).unwrap();
+    assert_eq!((values(&back.positions), back.faces), (values(&scan().positions), 1));
+    assert_eq!((back.up, back.unit), (Some(UP_Z), Some(Unit::Millimetre)));
+    // In metres, far from home, with colours.
+    let far = RawCloud {
+        unit: Some(Unit::Metre),
+        colors: Some(vec![1, 2, 3, 250, 251, 252, 0, 0, 0]),
+        origin: Some([500_000.25, 4e6, 0.0]),
+        ..scan()
+    };
+    let options = WriteOptions { unit: Some(Unit::Metre), ..WriteOptions::default() };
+    let back = read(&write(&far, Some(&[0, 1, 2]), Output::ThreeMf, options).unwrap(), Format::ThreeMf).unwrap();
+    assert_eq!(values(&back.positions)[..6], [500_000.25, 4e6, 0.0, 500_300.25, 4e6, 0.0]);
+    assert_eq!((back.colors, back.unit), (far.colors, Some(Unit::Metre)));
 }
 
 #[test]

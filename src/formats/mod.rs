@@ -188,7 +188,7 @@ impl Format {
     /// Which way is up, where the format says it.
     pub fn up(self) -> Option<[f64; 3]> {
         match self {
-            Format::Las | Format::E57 => Some([0.0, 0.0, 1.0]),
+            Format::Las | Format::E57 | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
             Format::Glb => Some([0.0, 1.0, 0.0]),
             _ => None,
         }

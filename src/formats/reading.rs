@@ -44,6 +44,11 @@ pub(super) trait Parser {
         None
     }
 
+    /// What a coordinate is, where the file says it.
+    fn unit(&self) -> Option<Unit> {
+        None
+    }
+
     /// What the columns of a table were taken for.
     fn columns(&self) -> Vec<String> {
         Vec::new()
@@ -260,7 +265,11 @@ impl Reading {
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
             up: self.up(format),
             seen_from_above: format.is_airborne(),
-            unit: crs.as_ref().and_then(Crs::unit).or(format.unit()),
+            unit: crs
+                .as_ref()
+                .and_then(Crs::unit)
+                .or_else(|| parser.and_then(|parser| parser.unit()))
+                .or(format.unit()),
             crs,
         }
     }
@@ -408,7 +417,7 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
         #[cfg(feature = "packed")]
         Format::Tiff => Box::new(super::packed::Tiff::new(options)),
         #[cfg(feature = "packed")]
-        Format::ThreeMf => Box::new(super::packed::ThreeMf::default()),
+        Format::ThreeMf => Box::new(super::packed::ThreeMf::new(faces())),
         #[cfg(feature = "packed")]
         Format::Glb => Box::new(super::glb::Glb::new(faces())),
         #[cfg(feature = "las")]
