@@ -6,6 +6,8 @@
  * Positions go in and come out in the caller's own frame and unit.
  */
 
+import type { ReconstructOptions, ReduceOptions } from './types.options.js';
+
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
 export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z x y z … `Float64Array` keeps georeferenced clouds exact. Results have the type of the input. */
@@ -27,6 +29,28 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   up?: [number, number, number];
   /** All was seen from high above, along `up` (z without it), as airborne scans are; carried to every reduced cloud. */
   seenFromAbove?: boolean;
+  /** What a coordinate is; carried to every result. */
+  unit?: Unit;
+  /** The reference system of world coordinates, as a LAS file describes it; carried to every result, and written to LAS and LAZ. */
+  crs?: Crs;
+  /** How many faces of a mesh the points were taken from; carried to every result. Measured points have none. */
+  faces?: number;
+}
+
+/** Millimetre, centimetre, metre, inch, foot, foot of the US survey; and the degree of longitude and latitude, which is no length. */
+export type Unit = 'mm' | 'cm' | 'm' | 'in' | 'ft' | 'us-ft' | 'deg';
+
+/** A direction along an axis, or any as three numbers that are not all 0. */
+export type Direction = 'x' | 'y' | 'z' | '-x' | '-y' | '-z' | [number, number, number];
+
+/** A coordinate reference system in the words of a file. */
+export interface Crs {
+  /** Well-known text. */
+  wkt?: string;
+  /** GeoTIFF's keys with their directory, their floating-point values and their texts. */
+  keys?: Uint16Array;
+  doubles?: Float64Array;
+  ascii?: string;
 }
 
 /** Places of a scanner or camera. */
@@ -61,122 +85,7 @@ export interface CallOptions {
   transfer?: boolean;
 }
 
-/** How much a reduction keeps: exactly one of them. */
-export type Target =
-  /** Share of the points, (0, 1]. The count of the result is exact. */
-  | { ratio: number }
-  /** Exactly this many points. */
-  | { count: number }
-  /**
-   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes mostly two
-   * to six reductions, at most eleven. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
-   */
-  | { tolerance: number }
-  /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
-  | { flatness: number };
-
-/** How the values of the input points become the value of the reduced point that stands for them. */
-export type Carry =
-  /** Their mean, weighted by membership: for measurements. */
-  | 'mean'
-  /** The value with the largest sum of memberships, of equals the smallest: for labels. A colour is one value. */
-  | 'majority'
-  /** That of the nearest input point. */
-  | 'nearest';
-
-export interface ReduceOptions {
-  /** Default `{ ratio: 1/3 }`. */
-  target?: Target;
-  /** `'paper'` is sections 3.1-3.2 of the paper to the letter; `'adaptive'` (the default) is our best. */
-  method?: 'adaptive' | 'paper';
-  /** m of eq. 1-5, (1, 100]. Default 1.5 (`'adaptive'`), 2 (`'paper'`). */
-  fuzzifier?: number;
-  /**
-   * ε of eq. 6, (0, 1]. `'paper'` stops when no membership changes by more, default 0.001; `'adaptive'` when no
-   * centre moves by more than this share of the wanted spacing, default 0.01.
-   */
-  epsilon?: number;
-  /** At least 1. Default 5 (`'adaptive'`), 100 (`'paper'`). */
-  maxIterations?: number;
-  /** The norm-inducing matrix A of eq. 1, for `'paper'`. Default `'euclidean'`. */
-  norm?: 'euclidean' | 'diagonal' | 'mahalanobis';
-  /** How many clusters a sub-domain gets: in proportion to the target (default), or by eq. 7. */
-  clusters?: 'proportional' | 'validity';
-  /** 0 = even spacing … 1 = strongest concentration on curved regions. Default 0.5. */
-  curvatureWeight?: number;
-  /**
-   * Where a centre goes: `'implicit'` on the surface (default), `'mesh'` best for triangles between the points,
-   * `'center'` the raw centre, `'sample'` the nearest input point.
-   */
-  placement?: 'implicit' | 'mesh' | 'center' | 'sample';
-  /** Of the random memberships that the paper's method starts from, an integer from 0. Default 0. */
-  seed?: number;
-  /** Most points of a sub-domain, 8 to 65536. Default: follows the target (`'adaptive'`), 256 (`'paper'`). */
-  cellPoints?: number;
-  /** Deepest level of the octree, 1 to 21. Default 21. */
-  maxDepth?: number;
-  /**
-   * How the cloud's attributes are carried to the reduced points and on to a mesh, by name; `colors` names the colours. Default `{}`:
-   * every one is `'mean'`.
-   */
-  attributes?: Record<string, Carry>;
-  /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
-  assignment?: boolean;
-  /** Say where the sub-domains of the octree are ({@link ReducedCloud.cells}). Default `false`. */
-  cells?: boolean;
-  /**
-   * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
-   * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
-   */
-  outliers?: 'keep' | 'drop';
-}
-
-export type Orientation = 'auto' | 'normals' | 'viewpoints' | 'up' | 'outward' | 'inward';
-
-export interface ReconstructOptions {
-  /**
-   * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
-   * {@link ReduceOptions}' defaults.
-   */
-  reduce?: ReduceOptions | false;
-  /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
-  accuracy?: number;
-  /** φ of eq. 9: r³ (`'triharmonic'`, the default), r (`'biharmonic'`), r² log r (`'thin-plate'`, the paper's). */
-  kernel?: 'biharmonic' | 'triharmonic' | 'thin-plate';
-  /** Ridge on the diagonal of eq. 11, from 0; `'auto'` (default) follows the noise that `inspect` estimates. */
-  smoothing?: number | 'auto';
-  /** Infer which side is out (default); `false` takes the cloud's own normals as they are. */
-  orient?: boolean;
-  /**
-   * What decides which side is out. `'auto'` (default): all that is known of the cloud, each as far as it holds when it is checked
-   * (its normals, its `viewpoints`, that it was seen from above or by a depth camera at 0 0 0), then closed shapes look outward and
-   * sheets up. `'normals'` and `'viewpoints'`: the cloud's own, unchecked, else the error `bad-option`. `'up'`: sheets and hulls look
-   * along the cloud's `up`, z without it. `'outward'` and `'inward'`: objects and rooms. `report.orientation` says what did decide.
-   */
-  orientation?: Orientation;
-  /** Turn the result to its other side. Default `false`. */
-  flip?: boolean;
-  /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
-  propagation?: 'global' | 'paper';
-  /**
-   * Edge length of the extraction grid, a fraction, 1e-4 to 0.25: the mesh is as dense everywhere. `'auto'` (default)
-   * follows the spacing and has at most three triangles for each fitted point, more where the surface is curved.
-   */
-  resolution?: number | 'auto';
-  /** Keep creases in the mesh. Default `true`. */
-  sharp?: boolean;
-  /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
-  boundary?: 'auto' | 'closed' | 'open';
-  /** Say of every input point and every vertex how far scan and mesh are apart there ({@link SurfaceMesh.distances}). Default `false`. */
-  distances?: boolean;
-  /**
-   * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
-   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
-   * bytes a point until a call without it or another cloud. An abort keeps what was done before it where memory can be shared,
-   * and forgets all elsewhere. Default `false`.
-   */
-  keep?: boolean;
-}
+export * from './types.options.js';
 
 /** Distances as fractions. */
 export interface Distances {
@@ -203,7 +112,11 @@ export type DoubtCode =
   /** A region looks away from where it was seen from. */
   | 'contradicts-sensor'
   /** A large part hangs on little, and may be the wrong way round. */
-  | 'weak-tie';
+  | 'weak-tie'
+  /** The mesh is not close to the points: too few of them, or some lie far from the rest. */
+  | 'far-from-points'
+  /** x and y look like degrees and z like metres. */
+  | 'degrees-as-lengths';
 
 /** What ran, where and for how long. */
 export interface RunReport {
@@ -301,7 +214,7 @@ export interface OrientationReport {
   weakestTie?: {
     /** Share that would turn. */
     share: number;
-    /** What holds it: neighbouring sub-domains of one sheet have about 0.5. */
+    /** What holds it to the others, by its size: parts of one smooth sheet have 1.5 and more. */
     strength: number;
   };
 }
@@ -372,8 +285,12 @@ export interface FileCloud<Positions extends Float32Array | Float64Array = Float
     dropped: number;
     /** Values of colours, normals and attributes that were NaN or infinite and are now 0. */
     replaced: number;
-    /** Faces that the file has; they are not read. */
+    /** Faces that the file has. */
     faces: number;
+    /** Points that were taken from them; missing where the points are the file's own. */
+    sampled?: number;
+    /** Files that the faces name and that were not there (`beside`), and pictures that are no PNG, JPEG or WebP: their colours are missing. */
+    missing?: string[];
   };
 }
 
@@ -382,7 +299,20 @@ export interface ReadOptions {
   name?: string;
   /** Default: recognised by content, then by name. */
   format?: Format;
+  /**
+   * Of a file with faces: `'sample'` (default) takes points from them, evenly over their area and never close together, four a
+   * triangle, at least 100,000 and at most 2,000,000, with normals, colours (of vertices, faces, materials and textures) and
+   * attributes; `'vertices'` takes the vertices.
+   */
+  faces?: 'sample' | 'vertices';
+  /** The files that a mesh may name, its material library and pictures: those dropped along, or what gives the data of a name. */
+  beside?: Beside;
 }
+
+/** Files by their names, folders and case aside; or a function, which gives `undefined` for what there is not. */
+export type Beside =
+  | File[]
+  | ((name: string) => Blob | ArrayBuffer | Uint8Array | undefined | Promise<Blob | ArrayBuffer | Uint8Array | undefined>);
 
 /** The formats that are written, and what of a result they hold: the others leave out what they have no place for. */
 export type OutputFormat =
@@ -392,20 +322,37 @@ export type OutputFormat =
   | 'xyz'
   /**
    * Binary glTF 2.0: everything. Positions are in single precision, and the origin is the node's translation in double
-   * precision; a cloud in double precision gets an origin near its middle. Axes and unit stay yours. Colours become
-   * linear, attributes `_NAME`; normals are left out where one is zero.
+   * precision; a cloud in double precision gets an origin near its middle. y is up, and the unit is the metre, where the
+   * cloud says its own. Colours become linear, attributes `_NAME`; normals are left out where one is zero.
    */
   | 'glb'
   /** Everything but attributes, in world coordinates as text; colours from 0 to 1 stand behind the coordinates. */
   | 'obj'
-  /** Binary: triangles alone, in single precision. Where there is an origin, the first 80 bytes say `at X Y Z`. */
-  | 'stl';
+  /**
+   * Binary: triangles alone, in single precision. Where there is an origin, the first 80 bytes say `at X Y Z`. z is up, and the
+   * unit is the millimetre, where the cloud says its own.
+   */
+  | 'stl'
+  /** Binary: points with everything, in world coordinates: in double precision where they need it. */
+  | 'pcd'
+  /**
+   * LAS 1.4, point formats 6 to 8, and LAZ: points with everything, in world coordinates, and the reference system. Attributes go to the
+   * fields of their names (`intensity`, `classification` …) where those hold them, else with normals to extra bytes. z is up.
+   */
+  | 'las'
+  | 'laz'
+  /** Triangles and colours; the origin is the item's transform. z is up, and the unit is the millimetre, where the cloud says its own. */
+  | '3mf';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
   format?: OutputFormat;
   /** Of a PLY file. Default `'binary'` (little-endian). */
   encoding?: 'binary' | 'ascii';
+  /** Which way is up in the file: the result is turned there from its own `up`. Default: what the format asks for, or as it is. */
+  up?: Direction;
+  /** The unit of the file: the result is scaled to it from its own. Default: what the format asks for, or as it is. */
+  unit?: Unit;
   /**
    * Of a GLB file: positions in steps of 1/65535 of the longest side and normals in steps of 1/127, which take half the room
    * (`KHR_mesh_quantization`, which viewers read without a decoder). Default `false`.
@@ -446,10 +393,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/` and `e57/`, or the URLs of the wasm files. The last three are
-   * loaded when a file of theirs is read. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `pictures/` and `exports/`, or the URLs of the wasm files.
+   * All but the first two are loaded when a file of theirs is read or written. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; pictures?: string | URL; exports?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.
@@ -494,6 +441,12 @@ export const sample: Engine['sample'];
 
 /** Resolves when the engine is ready to compute. */
 export function createEngine(options?: EngineOptions): Promise<Engine>;
+
+/**
+ * The mesh with its other side out: triangles and normals, those of its cloud too. With `triangle`, an index, only the piece that this
+ * triangle belongs to. The other arrays are those of `mesh`.
+ */
+export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: number }): T;
 
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;

@@ -1,7 +1,8 @@
 /** The command line to what is to be done. Whatever is wrong with it is found here, before a file is opened. */
 import { basename, extname, join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { ENGINE, nearest } from '../engine/options.js';
+import { ENGINE } from '../engine/options.js';
+import { nearest } from '../engine/rules.js';
 import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';
@@ -24,6 +25,7 @@ import { UsageError } from './usage.js';
  * @property {'auto' | number} threads
  * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
  * @property {Record<string, any>} own options of the function that has the command's name
+ * @property {Record<string, any>} read options of `read`
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
  */
@@ -94,8 +96,8 @@ function task(command, values, inputs) {
   if (inputs.length === 0) throw new UsageError(`${command} needs a file`);
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
-  const { own, write } = optionsFrom(command, values);
-  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, write };
+  const { own, read, write } = optionsFrom(command, values);
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, read, write };
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;

@@ -4,9 +4,10 @@
 //!
 //! The file is kept until all of it is there, because its directory is at its end; scans are then read one after the other.
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use crate::base::error::{Error, Result};
 use ::e57::{CartesianCoordinate, E57Reader, PointCloud, RecordDataType, RecordName, Transform};
 use std::io::Cursor;
@@ -67,7 +68,6 @@ fn normals(scan: &PointCloud) -> Option<[usize; 3]> {
 fn columns(scans: &[PointCloud]) -> Columns {
     let any = |has: fn(&PointCloud) -> bool| scans.iter().any(has);
     Columns {
-        position: [0, 1, 2],
         color: any(PointCloud::has_color).then_some([3, 4, 5]),
         scalars: if any(PointCloud::has_intensity) {
             vec![(6, "intensity".into())]
@@ -81,6 +81,7 @@ fn columns(scans: &[PointCloud]) -> Columns {
         } else {
             Precision::Double
         },
+        ..Columns::xyz()
     }
 }
 

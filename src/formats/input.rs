@@ -122,12 +122,17 @@ impl<'a> Input<'a> {
 
     /// The line taken last is wrong.
     pub(super) fn bad_line(&self, expected: &str, found: &[u8]) -> Error {
+        self.bad_value(self.place.line, expected, found)
+    }
+
+    /// A value of an earlier line is wrong.
+    pub(super) fn bad_value(&self, line: u64, expected: &str, found: &[u8]) -> Error {
         let found = if found.is_empty() {
             "nothing".into()
         } else {
             quote(found)
         };
-        self.bad("line", self.place.line, expected, found)
+        self.bad("line", line, expected, found)
     }
 
     /// An earlier line is wrong.

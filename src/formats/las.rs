@@ -6,13 +6,16 @@
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
+mod crs;
 mod laz;
 mod time;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use crate::base::error::Result;
+use crate::cloud::Crs;
 use ::las::point::Format;
 use ::las::raw;
 use laz::Laz;
@@ -20,9 +23,13 @@ use laz::Laz;
 /// The longest of the headers.
 const HEADER: usize = 375;
 
+/// Bytes of variable length records that are waited for.
+const MOST_RECORDS: u64 = 1 << 24;
+
 /// Reads the points.
 #[derive(Default)]
 pub(super) struct Las {
+    crs: Option<Crs>,
     header: Option<Header>,
     laz: Option<Laz>,
     row: u64,
@@ -36,7 +43,14 @@ impl Parser for Las {
                 if input.rest().len() < HEADER && !input.last {
                     return Ok(Step::More);
                 }
-                self.header.insert(Header::read(input)?)
+                let header = Header::read(input)?;
+                // Records of a sane size are waited for, since the points come behind them.
+                let awaited = header.start.min(input.size).min(MOST_RECORDS) as usize;
+                if !input.last && input.rest().len() < awaited {
+                    return Ok(Step::More);
+                }
+                self.crs = crs::read(&header, input.rest());
+                self.header.insert(header)
             }
         };
         let table = table.get_or_insert_with(|| {
@@ -77,6 +91,10 @@ impl Parser for Las {
             self.row += 1;
         }
         Ok(Step::Done)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        self.crs.clone()
     }
 }
 
@@ -200,12 +218,11 @@ impl Header {
             scalars.push((8, "nir".into()));
         }
         Columns {
-            position: [0, 1, 2],
-            normal: None,
             color: self.format.has_color.then_some([3, 4, 5]),
             scalars,
             colors: ColorRange::Integers,
             precision: Precision::Double,
+            ..Columns::xyz()
         }
     }
 

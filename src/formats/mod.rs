@@ -12,9 +12,11 @@
     allow(dead_code)
 )]
 
+mod colors;
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
+mod faces;
 #[cfg(feature = "files")]
 mod glb;
 mod input;
@@ -30,8 +32,12 @@ mod off;
 mod pcd;
 #[cfg(feature = "files")]
 mod ply;
+mod pictures;
 mod reading;
 mod stations;
+mod options;
+mod preview;
+mod sentinels;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -41,10 +47,15 @@ mod write;
 mod xyz;
 
 use crate::base::error::{Error, Result};
-use crate::cloud::{Attribute, Cloud, Viewpoints};
+use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
 use crate::pipeline::Surface;
 pub use detect::detect;
+pub use faces::{FaceMode, Picture, Sampling, Want};
+pub use options::ReadOptions;
+pub use pictures::decode as decode_picture;
+pub use preview::Preview;
 pub use reading::{Reading, Summary};
+pub use sentinels::LeftOut;
 pub use stations::{Run, Stations};
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
@@ -128,6 +139,20 @@ impl Format {
         self == Format::Las
     }
 
+    /// Which way is up, where the format says it.
+    pub fn up(self) -> Option<[f64; 3]> {
+        match self {
+            Format::Las | Format::E57 => Some([0.0, 0.0, 1.0]),
+            Format::Glb => Some([0.0, 1.0, 0.0]),
+            _ => None,
+        }
+    }
+
+    /// What a coordinate is, where the format says it; of LAS and LAZ the file may.
+    pub fn unit(self) -> Option<Unit> {
+        matches!(self, Format::E57 | Format::Glb).then_some(Unit::Metre)
+    }
+
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).
     pub fn from_name(name: &str) -> Option<Format> {
         let extension = name.rsplit('.').next().unwrap_or(name).to_lowercase();
@@ -187,12 +212,24 @@ pub struct RawCloud {
     pub up: Option<[f64; 3]>,
     /// Whether all was seen from above, as airborne scans are.
     pub seen_from_above: bool,
+    /// What a coordinate is.
+    pub unit: Option<Unit>,
+    /// The reference system of world coordinates.
+    pub crs: Option<Crs>,
     /// Rows left out because a coordinate was NaN or infinite.
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
-    /// Faces that the file says it has; they are not read.
+    /// Faces that the file says it has.
     pub faces: u64,
+    /// What was made of them.
+    pub sampling: Sampling,
+    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`. The first two are `dropped`.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// What the columns of a table of text were taken for, as [`ReadOptions::columns`] says it.
+    pub columns: Vec<String>,
+    /// What else is to be said of the points, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl RawCloud {
@@ -207,9 +244,15 @@ impl RawCloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            unit: None,
+            crs: None,
             dropped: 0,
             replaced: 0,
             faces: 0,
+            sampling: Sampling::default(),
+            skipped: Vec::new(),
+            columns: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -226,12 +269,15 @@ impl RawCloud {
             viewpoints: cloud.viewpoints.clone(),
             up: cloud.up.map(|up| up.as_dvec3().to_array()),
             seen_from_above: cloud.seen_from_above,
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(cloud.positions_f64()))
         }
     }
 
     /// The vertices of a mesh, in double precision; its triangles are [`Surface::indices`].
     pub fn of_surface(surface: &Surface) -> RawCloud {
+        let cloud = &surface.cloud.reduced.cloud;
         RawCloud {
             colors: surface.colors.as_ref().map(|c| c.as_flattened().to_vec()),
             normals: Some(
@@ -243,7 +289,10 @@ impl RawCloud {
                     .collect(),
             ),
             attributes: surface.attributes.clone(),
-            origin: surface.cloud.reduced.cloud.origin,
+            origin: cloud.origin,
+            up: cloud.up.map(|up| up.as_dvec3().to_array()),
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(surface.positions_f64()))
         }
     }
@@ -279,6 +328,14 @@ impl RawCloud {
             cloud = cloud.with_up(up)?;
         }
         cloud.origin = self.origin;
+        cloud.unit = self.unit;
+        cloud.crs = self.crs.clone();
+        // Points of faces are no measurements, and the results say so.
+        cloud.faces = if self.sampling.points > 0 {
+            self.faces
+        } else {
+            0
+        };
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 
@@ -311,10 +368,37 @@ impl RawCloud {
     }
 }
 
-/// Reads a file that is wholly in memory.
+/// Reads a file that is wholly in memory; of a file with faces its vertices.
 ///
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    Reading::new(Some(format), None, bytes.len() as u64).whole(bytes)
+    let options = ReadOptions {
+        faces: FaceMode::Vertices,
+        ..ReadOptions::default()
+    };
+    read_with(bytes, format, &options)
+}
+
+/// [`read`], with what the caller says of the file; of a file with faces points are taken from them unless told otherwise.
+///
+/// # Errors
+/// Those of [`read`], and [`Error::BadOption`].
+pub fn read_with(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<RawCloud> {
+    read_beside(bytes, format, options, &mut |_| None)
+}
+
+/// [`read_with`], where `beside` gives the content of files that faces name: of an OBJ file its material library and pictures.
+///
+/// # Errors
+/// The same.
+pub fn read_beside(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+    beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<RawCloud> {
+    Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(options.clone())?
+        .whole(bytes, beside)
 }

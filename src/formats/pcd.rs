@@ -11,10 +11,11 @@
 
 mod picture;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::lzf;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use super::text::number;
 use crate::base::error::Result;
 use picture::Picture;

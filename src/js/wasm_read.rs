@@ -3,7 +3,10 @@
 //! did; `pkg/files/reading.js` puts them together. The builds of readers have this and nothing else.
 
 use crate::base::error::Error;
-use crate::formats::{Block, ColorValues, Format, Positions, Reading, Stations, Summary};
+use crate::formats::{
+    Block, ColorValues, FaceMode, Format, Picture, Positions, ReadOptions, Reading, Stations,
+    Summary, Want,
+};
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
@@ -14,7 +17,7 @@ thread_local! {
     static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
 }
 
-/// Begins a file of `{ name, format, size }`, the first two optional; one that was being read is given up.
+/// Begins a file of `{ name, format, size, faces }`, all but the size optional; one that was being read is given up.
 #[wasm_bindgen(js_name = readStart)]
 pub fn read_start(options: JsValue) -> Result<(), JsValue> {
     let get = |name: &str| Reflect::get(&options, &name.into());
@@ -24,7 +27,16 @@ pub fn read_start(options: JsValue) -> Result<(), JsValue> {
     };
     let size = get("size")?.as_f64().unwrap_or(0.0) as u64;
     let name = get("name")?.as_string();
-    READING.set(Some(Reading::new(format, name.as_deref(), size)));
+    let faces = match get("faces")?.as_string().as_deref() {
+        Some("vertices") => FaceMode::Vertices,
+        _ => FaceMode::Sample,
+    };
+    let options = ReadOptions {
+        faces,
+        ..ReadOptions::default()
+    };
+    let reading = Reading::new(format, name.as_deref(), size).with_options(options)?;
+    READING.set(Some(reading));
     Ok(())
 }
 
@@ -37,7 +49,8 @@ pub fn read_push(bytes: &[u8]) -> JsResult {
     })
 }
 
-/// After the last bytes: `{ block, summary }`, the latter when all is read.
+/// After the last bytes: `{ block, summary, want }`: the second when all is read, the last where something else is needed for
+/// that: `{ file }` by its name, which [`read_file`] gives, or the pixels of a `{ picture }`'s bytes, which [`read_picture`] gives.
 #[wasm_bindgen(js_name = readEnd)]
 pub fn read_end() -> JsResult {
     let answer = with(|reading| {
@@ -45,12 +58,41 @@ pub fn read_end() -> JsResult {
             true => summary(&reading.summary())?,
             false => JsValue::UNDEFINED,
         };
-        object([("block", block(reading)?), ("summary", summary)])
+        let want = match reading.want() {
+            Some(Want::File(name)) => object([("file", name.into())])?,
+            Some(Want::Picture(bytes)) => {
+                object([("picture", Uint8Array::from(&bytes[..]).into())])?
+            }
+            None => JsValue::UNDEFINED,
+        };
+        object([
+            ("block", block(reading)?),
+            ("summary", summary),
+            ("want", want),
+        ])
     })?;
     if Reflect::has(&answer, &"summary".into())? {
         READING.set(None);
     }
     Ok(answer)
+}
+
+/// The content of the file that is wanted; undefined where there is none.
+#[wasm_bindgen(js_name = readFile)]
+pub fn read_file(content: Option<Vec<u8>>) -> JsResult {
+    with(|reading| {
+        reading.give_file(content.as_deref());
+        Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// The pixels of the picture that is wanted; undefined where it is of no kind that is read.
+#[wasm_bindgen(js_name = readPicture)]
+pub fn read_picture(pixels: Option<Vec<u8>>, width: usize, height: usize) -> JsResult {
+    with(|reading| {
+        reading.give_picture(pixels.and_then(|pixels| Picture::new(width, height, pixels)));
+        Ok(JsValue::UNDEFINED)
+    })
 }
 
 /// Does something with the file that is being read; an error ends it.
@@ -120,7 +162,7 @@ fn block(reading: &mut Reading) -> JsResult {
 }
 
 fn summary(summary: &Summary) -> JsResult {
-    let verdict = summary.verdict;
+    let verdict = &summary.verdict;
     object([
         ("format", summary.format.name().into()),
         ("dropped", (summary.dropped as f64).into()),
@@ -138,6 +180,24 @@ fn summary(summary: &Summary) -> JsResult {
             }),
         ),
         ("seenFromAbove", summary.seen_from_above.into()),
+        (
+            "unit",
+            optional(&summary.unit, |unit| JsValue::from(unit.name())),
+        ),
+        ("crs", crs(summary)?),
+        ("sampled", (summary.sampling.points as f64).into()),
+        ("unused", (summary.sampling.unused as f64).into()),
+        ("broken", (summary.sampling.broken as f64).into()),
+        (
+            "missing",
+            summary
+                .sampling
+                .missing
+                .iter()
+                .map(JsValue::from)
+                .collect::<Array>()
+                .into(),
+        ),
     ])
 }
 
@@ -155,4 +215,15 @@ fn stations(stations: &Stations) -> JsResult {
         ("starts", Float64Array::from(&starts[..]).into()),
         ("of", Uint32Array::from(&of[..]).into()),
     ])
+}
+
+/// Only LAS has one.
+#[cfg(feature = "las")]
+fn crs(summary: &Summary) -> JsResult {
+    crate::js::crs::crs_to_js(&summary.crs)
+}
+
+#[cfg(not(feature = "las"))]
+fn crs(_: &Summary) -> JsResult {
+    Ok(JsValue::UNDEFINED)
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::glue;
+use crate::options;
 use crate::setup;
 use crate::shell::{Result, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
@@ -23,15 +24,21 @@ pub enum Build {
     Las,
     /// The reader of E57 alone.
     E57,
+    /// The decoders of textures' pictures alone.
+    Pictures,
+    /// The writers that are not in the engine, alone.
+    Exports,
 }
 
 impl Build {
-    pub const ALL: [Build; 5] = [
+    pub const ALL: [Build; 7] = [
         Build::Single,
         Build::Threads,
         Build::Files,
         Build::Las,
         Build::E57,
+        Build::Pictures,
+        Build::Exports,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -43,6 +50,8 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
         }
     }
 
@@ -54,6 +63,8 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
         }
     }
 
@@ -61,7 +72,7 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 => {
+            Self::Single | Self::Files | Self::Las | Self::E57 | Self::Pictures | Self::Exports => {
                 strings(&["-Ctarget-feature=+simd128"])
             }
             Self::Threads => {
@@ -139,8 +150,9 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: what is written from the table of options, and pkg/wasm/single, threads, files, las and e57.
 pub fn build() -> Result<()> {
+    options::write()?;
     let toolchain = toolchain::wasm()?;
     let tools = setup::wasm_tools()?;
     setup::npm(&root().join("xtask"))?;
