@@ -30,10 +30,12 @@ pub enum Build {
     Pictures,
     /// The writers that are not in the engine, alone.
     Exports,
+    /// The readers of what is packed as a whole.
+    Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 7] = [
+    pub const ALL: [Build; 8] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -41,6 +43,7 @@ impl Build {
         Build::E57,
         Build::Pictures,
         Build::Exports,
+        Build::Packed,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -54,6 +57,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -67,6 +71,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -74,9 +79,13 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 | Self::Pictures | Self::Exports => {
-                strings(&["-Ctarget-feature=+simd128"])
-            }
+            Self::Single
+            | Self::Files
+            | Self::Las
+            | Self::E57
+            | Self::Pictures
+            | Self::Exports
+            | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
                     "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
@@ -169,7 +178,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: what is written from the table of options, and pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: what is written from the table of options, and every folder of pkg/wasm.
 pub fn build() -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::process::{Child, Command};
+use std::time::Instant;
 
 use crate::build::{Build, Builder};
 use crate::options;
@@ -43,7 +44,8 @@ pub fn serve(port: u16) -> Result<()> {
     page::build(&later)?;
     let mut server = start(port)?;
     say(&format!(
-        "the page is at http://localhost:{port}/ until you press Ctrl-C"
+        "the page is at http://localhost:{port}/ until you press Ctrl-C (after {})",
+        steps.elapsed()
     ));
     if let Err(sentence) = finish(&builder, &later, &mut steps) {
         say(&format!("{sentence}; the page goes on without it"));
@@ -68,7 +70,10 @@ fn finish(builder: &Builder, later: &[Build], steps: &mut Steps) -> Result<()> {
     }
     steps.begin("building the page with all of it");
     page::build(&[])?;
-    say("all is built: reload the page");
+    say(&format!(
+        "all is built, after {}: reload the page",
+        steps.elapsed()
+    ));
     Ok(())
 }
 
@@ -185,6 +190,7 @@ fn about(minutes: f32) -> String {
 struct Steps {
     all: usize,
     begun: usize,
+    start: Instant,
 }
 
 impl Steps {
@@ -193,7 +199,14 @@ impl Steps {
         Self {
             all: first + later,
             begun: 0,
+            start: Instant::now(),
         }
+    }
+
+    /// Minutes and seconds so far.
+    fn elapsed(&self) -> String {
+        let seconds = self.start.elapsed().as_secs();
+        format!("{} min {} s", seconds / 60, seconds % 60)
     }
 
     fn begin(&mut self, what: &str) {
