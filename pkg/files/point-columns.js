@@ -39,7 +39,7 @@ import { PointweaveError } from '../engine/errors.js';
  * @typedef {{ positions: Float64Array, starts: Float64Array, of: Uint32Array }} Stations
  */
 
-export class Columns {
+export class PointColumns {
   /** Of positions, normals, colours; then of the attributes. @type {Map<string, Column>} */
   #columns = new Map();
   /** @type {Column[]} */

@@ -12,7 +12,7 @@ import { likelyUp } from '../../pkg/viewer/upright.js';
 import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
-import { WORDS } from '../../www/src/results/words.js';
+import { MESSAGES } from '../../www/src/results/error-messages.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
 const BLINDNESS = {
@@ -143,6 +143,6 @@ test('every error code of the package has its words', async () => {
   const codes = /type ErrorCode =([^;]*);/.exec(types)[1].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1));
   assert.ok(codes.length >= 12);
   for (const code of codes) {
-    assert.ok(WORDS[code]?.title && WORDS[code].text && WORDS[code].advice, `no words for ${code}`);
+    assert.ok(MESSAGES[code]?.title && MESSAGES[code].text && MESSAGES[code].advice, `no words for ${code}`);
   }
 });
