@@ -60,7 +60,9 @@ fn row(name: &str, scene: &Scene, peer: &mut Option<Peer>) -> io::Result<()> {
     let stage = |s: &(pointweave::Stage, f64)| s.0 == pointweave::Stage::Orient;
     let ms = report.ms.iter().find(stage).map_or(0.0, |s| s.1);
     let peers = match peer {
-        Some(peer) => peer.right(scene)?.map(|share| format!("{:.2}", 100.0 * share)),
+        Some(peer) => peer
+            .right(scene)?
+            .map(|share| format!("{:.2}", 100.0 * share)),
         None => [String::new(), String::new()],
     };
     let doubts: Vec<&str> = report.doubts.iter().map(|d| d.code).collect();
@@ -80,7 +82,10 @@ fn row(name: &str, scene: &Scene, peer: &mut Option<Peer>) -> io::Result<()> {
 fn somewhere(scene: &Scene) -> DVec3 {
     let told = &scene.told;
     if told.above {
-        let top = scene.points.iter().fold(DVec3::NEG_INFINITY, |a, &p| a.max(p));
+        let top = scene
+            .points
+            .iter()
+            .fold(DVec3::NEG_INFINITY, |a, &p| a.max(p));
         return top + DVec3::Z * 1e4;
     }
     told.viewpoints.first().copied().unwrap_or(DVec3::ZERO)

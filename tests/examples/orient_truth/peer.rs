@@ -34,7 +34,10 @@ impl Peer {
         for p in std::iter::once(&somewhere(scene)).chain(&scene.points) {
             message.extend(p.to_array().iter().flat_map(|x| x.to_le_bytes()));
         }
-        let to = self.to.as_mut().ok_or_else(|| io::Error::other("the peer has ended"))?;
+        let to = self
+            .to
+            .as_mut()
+            .ok_or_else(|| io::Error::other("the peer has ended"))?;
         to.write_all(&message)?;
         to.flush()?;
         let mut shares = [0.0; 2];

@@ -19,11 +19,15 @@ pub const ALL: &[(&str, Make)] = &[
         let (scene, .., normals) = bunny()?;
         Some(scene.with_normals(normals))
     }),
-    ("real: redwood", || seen_from_origin("scans/redwood_fragment_002.ply")),
+    ("real: redwood", || {
+        seen_from_origin("scans/redwood_fragment_002.ply")
+    }),
     ("real: range hood, surroundings", || {
         seen_from_origin("scans/cad_scans/Range_Hood_4_BB1.6.ply")
     }),
-    ("real: range hood", || seen_from_origin("scans/cad_scans/Range_Hood_4_filtered.ply")),
+    ("real: range hood", || {
+        seen_from_origin("scans/cad_scans/Range_Hood_4_filtered.ply")
+    }),
     ("real: chair", || {
         let lies = |_: DVec3, n: DVec3| (n.y.abs() > 0.9).then_some(n.y > 0.0);
         file("scans/iphone_chair.obj", lies).map(|s| s.0)
@@ -51,7 +55,9 @@ fn file(
     let cloud = raw.to_cloud().expect("a cloud");
     let origin = DVec3::from_array(raw.origin.unwrap_or_default());
     let positions = cloud.positions_f64();
-    let points = positions.chunks_exact(3).map(|p| DVec3::from_slice(p) + origin);
+    let points = positions
+        .chunks_exact(3)
+        .map(|p| DVec3::from_slice(p) + origin);
     let mut scene = Scene::new(Sure::Told, points.collect(), truth);
     scene.told.normals = cloud
         .normals
@@ -77,7 +83,11 @@ fn airborne(name: &str) -> Option<Scene> {
         .collect();
     if let Some(&first) = ground.first() {
         let near: Vec<Vec3> = ground.iter().map(|&p| (p - first).as_vec3()).collect();
-        let all: Vec<Vec3> = scene.points.iter().map(|&p| (p - first).as_vec3()).collect();
+        let all: Vec<Vec3> = scene
+            .points
+            .iter()
+            .map(|&p| (p - first).as_vec3())
+            .collect();
         let (near, all) = (Octree::build(&near), Octree::build(&all));
         scene.truth = Box::new(move |p, n| {
             let mut found = Vec::new();
@@ -99,13 +109,18 @@ fn bunny() -> Option<(Scene, Vec<DVec3>, Vec<u32>, Vec<DVec3>)> {
     let (mut eyes, mut of) = (Vec::new(), Vec::new());
     for line in poses.lines().filter(|l| l.starts_with("bmesh")) {
         let words: Vec<&str> = line.split_whitespace().collect();
-        let x: Vec<f64> = words[2..].iter().map(|w| w.parse().expect("a number")).collect();
+        let x: Vec<f64> = words[2..]
+            .iter()
+            .map(|w| w.parse().expect("a number"))
+            .collect();
         let turn = DQuat::from_xyzw(x[3], x[4], x[5], -x[6]).normalize();
         let place = |p: DVec3| turn * p + DVec3::new(x[0], x[1], x[2]);
         let scan = raw(&format!("scans/bunny_raw/{}", words[1]))?;
         let cloud = scan.to_cloud().expect("a cloud");
         let positions = cloud.positions_f64();
-        let moved = positions.chunks_exact(3).map(|p| place(DVec3::from_slice(p)));
+        let moved = positions
+            .chunks_exact(3)
+            .map(|p| place(DVec3::from_slice(p)));
         points.extend(moved);
         of.resize(points.len(), eyes.len() as u32);
         eyes.push(place(DVec3::Z * 10.0));
@@ -147,9 +162,11 @@ fn zipper() -> Option<(Vec<Vec3>, Vec<DVec3>)> {
             normals[v] += (b - a).cross(c - a);
         }
     }
-    let used = normals.iter().zip(&vertices).filter(|(n, _)| **n != DVec3::ZERO);
-    let (normals, vertices): (Vec<DVec3>, Vec<Vec3>) = used
-        .map(|(n, v)| (n.normalize(), v.as_vec3()))
-        .unzip();
+    let used = normals
+        .iter()
+        .zip(&vertices)
+        .filter(|(n, _)| **n != DVec3::ZERO);
+    let (normals, vertices): (Vec<DVec3>, Vec<Vec3>) =
+        used.map(|(n, v)| (n.normalize(), v.as_vec3())).unzip();
     Some((vertices, normals))
 }
