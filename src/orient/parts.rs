@@ -39,9 +39,7 @@ const SIDED: [f32; 2] = [0.6, 0.9];
 pub(crate) struct Tie {
     pub(crate) a: u32,
     pub(crate) b: u32,
-    /// Σ w s s over their edges.
-    pub(crate) sum: f32,
-    /// The same as far as it is one-sided.
+    /// Σ w s s over their edges, as far as it is one-sided.
     pub(crate) strength: f32,
 }
 
@@ -286,16 +284,12 @@ impl Ground<'_> {
             for edges in others.chunk_by(|x, y| unpack(*x).0 == unpack(*y).0) {
                 let b = unpack(edges[0]).0;
                 let edges = || edges.iter().map(|&p| &self.edges[unpack(p).1 as usize]);
-                let sum = edges().map(|e| self.agreement(e)).sum();
+                let sum: f32 = edges().map(|e| self.agreement(e)).sum();
                 let sided = self.sided(edges(), |e| of[e.a as usize] == a);
                 let sided = sided.min(self.sided(edges(), |e| of[e.a as usize] == b));
                 let sure = ((sided - SIDED[0]) / (SIDED[1] - SIDED[0])).clamp(0.0, 1.0);
-                ties.push(Tie {
-                    a,
-                    b,
-                    sum,
-                    strength: sum * sure,
-                });
+                let strength = sum * sure;
+                ties.push(Tie { a, b, strength });
             }
         }
         ties
