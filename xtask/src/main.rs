@@ -24,7 +24,7 @@ Usage: cargo xtask <command> [options]
   serve [--port N]      the builds and the page, served on localhost (default port 8080)
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,element,page
-  bench [ARGS…]         the benchmarks, after a build; ARGS go to tests/bench/bench.mjs
+  bench [ARGS…]         the benchmarks, after a build; `orient` and what else tests/bench/bench.mjs knows
   setup                 install whatever the other commands need, and nothing else
 
 Environment: CHROMIUM, CHROMEDRIVER, FIREFOX and GECKODRIVER name programs to use instead of those found;
