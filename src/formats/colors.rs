@@ -7,10 +7,24 @@ pub(super) enum ColorRange {
     Bytes,
     /// 1.
     Unit,
+    /// Coefficients of the spherical harmonic of degree 0, as Gaussian splats have them.
+    Harmonics,
     /// Integers of 8, 12 or 16 bits.
     Integers,
     /// The values tell: 1 where they are at most 1, else integers.
     Guess,
+}
+
+impl ColorRange {
+    /// A value of a file, as it is kept.
+    pub(super) fn kept(self, value: f32) -> f32 {
+        /// 1 / (2 √π).
+        const HARMONIC_0: f32 = 0.282_094_8;
+        match self {
+            ColorRange::Harmonics => (0.5 + HARMONIC_0 * value).clamp(0.0, 1.0),
+            _ => value,
+        }
+    }
 }
 
 /// Counts of the values of colours.
@@ -38,7 +52,7 @@ impl Tally {
         let strays = |count: u64| 100 * count <= self.positive;
         let unit = self.over_1 == 0 || (self.fractional > 0 && strays(self.over_1));
         match range {
-            ColorRange::Unit => 255.0,
+            ColorRange::Unit | ColorRange::Harmonics => 255.0,
             ColorRange::Guess if unit => 255.0,
             _ if strays(self.over_255) => 1.0,
             _ if self.over_4095 == 0 => 255.0 / 4095.0,

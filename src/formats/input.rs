@@ -114,6 +114,16 @@ impl<'a> Input<'a> {
         Ok(Some(line))
     }
 
+    /// Where the input is, for [`Input::go_back`].
+    pub(super) fn mark(&self) -> (&'a [u8], Place) {
+        (self.bytes, self.place)
+    }
+
+    /// Gives back all that was taken since.
+    pub(super) fn go_back(&mut self, (bytes, place): (&'a [u8], Place)) {
+        (self.bytes, self.place) = (bytes, place);
+    }
+
     /// Gives back the last byte of a line's end that was two: it was not the line's.
     pub(super) fn put_back_line_feed(&mut self, whole: &'a [u8]) {
         self.bytes = &whole[whole.len() - self.bytes.len() - 1..];

@@ -8,8 +8,13 @@
 
 // A build with one feature's readers leaves parts unused of what they share.
 #![cfg_attr(
-    not(all(feature = "e57", feature = "files", feature = "las")),
-    allow(dead_code)
+    not(all(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )),
+    allow(dead_code, unused_variables)
 )]
 
 mod colors;
@@ -17,8 +22,10 @@ mod detect;
 #[cfg(feature = "e57")]
 mod e57;
 mod faces;
-#[cfg(feature = "files")]
+#[cfg(feature = "packed")]
 mod glb;
+#[cfg(feature = "files")]
+mod grid;
 mod input;
 #[cfg(feature = "las")]
 mod las;
@@ -36,8 +43,14 @@ mod pictures;
 mod reading;
 mod stations;
 mod options;
+#[cfg(feature = "packed")]
+mod packed;
 mod preview;
+#[cfg(feature = "files")]
+mod ptx;
 mod sentinels;
+#[cfg(any(feature = "files", feature = "packed"))]
+mod splats;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -52,6 +65,8 @@ use crate::pipeline::Surface;
 pub use detect::detect;
 pub use faces::{FaceMode, Picture, Sampling, Want};
 pub use options::ReadOptions;
+#[cfg(feature = "packed")]
+pub use packed::{Archive, Entry};
 pub use pictures::decode as decode_picture;
 pub use preview::Preview;
 pub use reading::{Reading, Summary};
@@ -81,11 +96,23 @@ pub enum Format {
     Las,
     /// ASTM E2807.
     E57,
+    /// Leica's PTX: scans as text, each at its pose.
+    Ptx,
+    /// ESRI's ASCII raster: an elevation grid.
+    Grid,
+    /// GeoTIFF with one band: an elevation grid.
+    Tiff,
+    /// 3MF: its vertices.
+    ThreeMf,
+    /// Gaussian splats of 32 bytes: their centres.
+    Splat,
+    /// Gaussian splats, packed: their centres.
+    Spz,
 }
 
 impl Format {
     /// All formats that are read.
-    pub const ALL: [Format; 9] = [
+    pub const ALL: [Format; 15] = [
         Format::Ply,
         Format::Xyz,
         Format::Pcd,
@@ -95,6 +122,12 @@ impl Format {
         Format::Glb,
         Format::Las,
         Format::E57,
+        Format::Ptx,
+        Format::Grid,
+        Format::Tiff,
+        Format::ThreeMf,
+        Format::Splat,
+        Format::Spz,
     ];
     /// Those that are written, too, and read back to the same bits.
     pub const WRITTEN: [Format; 2] = [Format::Ply, Format::Xyz];
@@ -116,6 +149,12 @@ impl Format {
             Format::Glb => "GLB",
             Format::Las => "LAS",
             Format::E57 => "E57",
+            Format::Ptx => "PTX",
+            Format::Grid => "ASCII grid",
+            Format::Tiff => "GeoTIFF",
+            Format::ThreeMf => "3MF",
+            Format::Splat => "splat",
+            Format::Spz => "SPZ",
         }
     }
 
@@ -131,6 +170,13 @@ impl Format {
             Format::Glb => &["glb"],
             Format::Las => &["las", "laz"],
             Format::E57 => &["e57"],
+            Format::Ptx => &["ptx"],
+            // Those that end with .asc are told from rows of points by their content.
+            Format::Grid => &["grid", "agr", "grd"],
+            Format::Tiff => &["tif", "tiff"],
+            Format::ThreeMf => &["3mf"],
+            Format::Splat => &["splat"],
+            Format::Spz => &["spz"],
         }
     }
 
@@ -142,7 +188,7 @@ impl Format {
     /// Which way is up, where the format says it.
     pub fn up(self) -> Option<[f64; 3]> {
         match self {
-            Format::Las | Format::E57 => Some([0.0, 0.0, 1.0]),
+            Format::Las | Format::E57 | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
             Format::Glb => Some([0.0, 1.0, 0.0]),
             _ => None,
         }
@@ -151,6 +197,12 @@ impl Format {
     /// What a coordinate is, where the format says it; of LAS and LAZ the file may.
     pub fn unit(self) -> Option<Unit> {
         matches!(self, Format::E57 | Format::Glb).then_some(Unit::Metre)
+    }
+
+    /// Whether it starts with text, before which editors put a byte order mark.
+    fn is_text(self) -> bool {
+        use Format::{Grid, Obj, Off, Pcd, Ply, Ptx, Stl, Xyz};
+        matches!(self, Ply | Xyz | Pcd | Obj | Off | Stl | Ptx | Grid)
     }
 
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).

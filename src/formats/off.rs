@@ -11,9 +11,16 @@ use crate::base::error::Result;
 /// Whether the first line that is no comment starts as an OFF file does.
 pub(super) fn looks_like(head: &[u8]) -> bool {
     head.split(|&b| b == b'\n' || b == b'\r')
-        .filter_map(|line| words(without_comment(line)).next())
-        .next()
+        .map(|line| first_word(without_comment(line)))
+        .find(|word| !word.is_empty())
         .is_some_and(|word| Kind::of(word).is_some())
+}
+
+/// The first word, without a count that is not kept apart from it: `OFF240 0 0`, as in ModelNet.
+fn first_word(line: &[u8]) -> &[u8] {
+    let word = words(line).next().unwrap_or_default();
+    let digits = word.iter().rev().take_while(|b| b.is_ascii_digit()).count();
+    &word[..word.len() - digits]
 }
 
 /// What the first word says that each vertex has.
@@ -119,7 +126,7 @@ impl Off {
     fn line(&mut self, line: &[u8], input: &Input, table: &mut Option<Table>) -> Result<()> {
         let mut rest = line;
         if self.kind.is_none() {
-            let word = words(line).next().unwrap_or_default();
+            let word = first_word(line);
             self.kind = Some(Kind::of(word).ok_or_else(|| input.bad_line("\"OFF\"", line))?);
             rest = line[word.len()..].trim_ascii();
             if rest == b"BINARY" {

@@ -15,6 +15,7 @@ mod header;
 use super::faces::Faces;
 use super::input::Input;
 use super::reading::{Parser, Step};
+use super::splats::SPLATS;
 use super::table::Table;
 use super::text::{number, words};
 use crate::base::error::Result;
@@ -89,6 +90,12 @@ impl Parser for Ply {
             Some(table) => rows.read(input, table, &mut self.faces),
             None => Ok(Step::Done),
         }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let is_splats = |rows: &Rows| rows.header.elements[rows.points].is_splats();
+        let splats = self.rows.iter().any(is_splats);
+        splats.then(|| SPLATS.to_string()).into_iter().collect()
     }
 
     fn faces(&self) -> u64 {
@@ -208,12 +215,13 @@ fn read_rows(
 }
 
 /// A line that is not blank: its values, and its lists. `false` where it is not at hand.
-fn read_text_row(
+fn read_text_row<'a>(
     element: &Element,
-    input: &mut Input,
+    input: &mut Input<'a>,
     row: &mut Vec<f64>,
     lists: &mut Lists,
 ) -> Result<bool> {
+    let start = input.mark();
     let line = loop {
         match input.line()? {
             Some(line) if line.trim_ascii().is_empty() => {}
@@ -222,27 +230,50 @@ fn read_text_row(
             None => return Ok(false),
         }
     };
+    let first = input.place.line;
     let mut tokens = words(line);
-    let mut next = || {
-        let token = tokens.next().ok_or_else(|| {
-            let expected = format!("{} values", element.properties.len());
-            input.bad_line(&expected, line)
-        })?;
-        number(token).ok_or_else(|| input.bad_line("a number", token))
+    // A row may go on in the next lines, where it ends with one.
+    let mut next = |input: &mut Input<'a>| loop {
+        if let Some(token) = tokens.next() {
+            let value = number(token).ok_or_else(|| input.bad_line("a number", token))?;
+            return Ok(Some(value));
+        }
+        match input.line()? {
+            Some(more) => tokens = words(more),
+            None => return Ok(None),
+        }
     };
-    for property in &element.properties {
+    let mut whole = true;
+    'row: for property in &element.properties {
+        let Some(value) = next(input)? else {
+            whole = false;
+            break;
+        };
         match property {
-            Property::One { .. } => row.push(next()?),
+            Property::One { .. } => row.push(value),
             Property::List { .. } => {
                 let items =
-                    list_length(next()?).ok_or_else(|| input.bad_line("a list's length", line))?;
-                (0..items).try_for_each(|_| next().map(|item| lists.items.push(item)))?;
+                    list_length(value).ok_or_else(|| input.bad_line("a list's length", line))?;
+                for _ in 0..items {
+                    let Some(item) = next(input)? else {
+                        whole = false;
+                        break 'row;
+                    };
+                    lists.items.push(item);
+                }
                 lists.ends.push(lists.items.len());
             }
         }
     }
+    let short = format!("{} values", element.properties.len());
     match tokens.next() {
+        _ if !whole && !input.last => {
+            input.go_back(start);
+            Ok(false)
+        }
+        _ if !whole => Err(input.bad_value(first, &short, line)),
         None => Ok(true),
+        Some(_) if input.place.line > first => Err(input.bad_value(first, &short, line)),
         Some(token) => Err(input.bad_line("the end of the line", token)),
     }
 }

@@ -5,12 +5,15 @@ use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::input::{Input, Place};
 use super::options::ReadOptions;
 use super::sentinels::LeftOut;
-use super::table::{Block, Table, Verdict, skipped};
+use super::table::{Block, Table, Verdict};
 use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
-use super::{glb, obj, off, pcd, ply, stl, xyz};
+use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
 use crate::cloud::{Crs, Unit};
+
+/// The byte order mark of UTF-8.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
@@ -38,6 +41,11 @@ pub(super) trait Parser {
 
     /// The reference system of the coordinates.
     fn crs(&self) -> Option<Crs> {
+        None
+    }
+
+    /// What a coordinate is, where the file says it.
+    fn unit(&self) -> Option<Unit> {
         None
     }
 
@@ -249,7 +257,7 @@ impl Reading {
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, |table| table.replaced),
             faces: parser.map_or(0, |parser| parser.faces()),
-            skipped: table.map_or(Vec::new(), |table| skipped(table.dropped, table.invalid)),
+            skipped: table.map_or(Vec::new(), |table| [table.skipped([0; 2]), self.sampled.skipped()].concat()),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
             preview: parser.and_then(|parser| parser.preview()),
@@ -257,7 +265,11 @@ impl Reading {
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
             up: self.up(format),
             seen_from_above: format.is_airborne(),
-            unit: crs.as_ref().and_then(Crs::unit).or(format.unit()),
+            unit: crs
+                .as_ref()
+                .and_then(Crs::unit)
+                .or_else(|| parser.and_then(|parser| parser.unit()))
+                .or(format.unit()),
             crs,
         }
     }
@@ -312,6 +324,7 @@ impl Reading {
             seen_from_above,
             unit,
             crs,
+            skipped: [cloud.skipped, self.sampled.skipped()].concat(),
             sampling: self.sampled,
             ..cloud
         })
@@ -345,11 +358,17 @@ impl Reading {
         let Some(format) = self.tell(bytes, last)? else {
             return Ok(0);
         };
+        if self.place.byte == 0 && bytes.len() < MARK.len() && !last {
+            return Ok(0);
+        }
         let parser = match &mut self.parser {
             Some(parser) => parser,
             None => self.parser.insert(parser(format, &self.options)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
+        if self.place.byte == 0 && format.is_text() && bytes.starts_with(MARK) {
+            input.skip(MARK.len() as u64);
+        }
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
         if self.done {
             self.faces = parser
@@ -390,12 +409,29 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
         #[cfg(feature = "files")]
         Format::Stl => Box::new(stl::Stl::new(faces())),
         #[cfg(feature = "files")]
-        Format::Glb => Box::new(glb::Glb::new(faces())),
+        Format::Ptx => Box::new(ptx::Ptx::new(options)),
+        #[cfg(feature = "files")]
+        Format::Grid => Box::new(grid::Raster::new(options)),
+        #[cfg(feature = "files")]
+        Format::Splat => Box::new(splats::Splats),
+        #[cfg(feature = "packed")]
+        Format::Spz => Box::new(super::packed::Spz),
+        #[cfg(feature = "packed")]
+        Format::Tiff => Box::new(super::packed::Tiff::new(options)),
+        #[cfg(feature = "packed")]
+        Format::ThreeMf => Box::new(super::packed::ThreeMf::new(faces())),
+        #[cfg(feature = "packed")]
+        Format::Glb => Box::new(super::glb::Glb::new(faces())),
         #[cfg(feature = "las")]
         Format::Las => Box::new(super::las::Las::default()),
         #[cfg(feature = "e57")]
         Format::E57 => Box::new(super::e57::E57::default()),
-        #[cfg(not(all(feature = "e57", feature = "files", feature = "las")))]
+        #[cfg(not(all(
+            feature = "e57",
+            feature = "files",
+            feature = "las",
+            feature = "packed"
+        )))]
         other => {
             return Err(crate::Error::UnsupportedFile {
                 format: other.title(),

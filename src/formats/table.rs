@@ -154,6 +154,9 @@ pub(super) struct Table {
     pub(super) dropped: usize,
     /// Rows left out because the file marks them as invalid.
     pub(super) invalid: usize,
+    /// Rows left out because the file says that they have no height, or no return.
+    pub(super) no_data: u64,
+    pub(super) no_returns: u64,
     pub(super) replaced: usize,
     /// Which rows were left out, counted with all others, where faces ask for it.
     pub(super) gone: Option<Vec<u32>>,
@@ -180,6 +183,8 @@ impl Table {
             dropped: 0,
             gone: None,
             invalid: 0,
+            no_data: 0,
+            no_returns: 0,
             replaced: 0,
         }
     }
@@ -259,7 +264,8 @@ impl Table {
             normals.extend(normal);
         }
         if let (Some(color), Some(colors)) = (self.columns.color, &mut self.block.colors) {
-            let color = color.map(&mut finite);
+            let range = self.columns.colors;
+            let color = color.map(|column| range.kept(finite(column)));
             match colors {
                 ColorValues::Bytes(bytes) => bytes.extend(color.map(|c| c as u8)),
                 ColorValues::Numbers(numbers) => {
@@ -290,6 +296,9 @@ impl Table {
     /// The rows from here on were seen from `position`; `None` where the file does not tell.
     pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
         self.stations.begin(self.rows, position);
+        if let Some(position) = position {
+            self.sentinels.seen_from(position);
+        }
     }
 
     /// The rows since the last block.
@@ -327,6 +336,17 @@ impl Table {
         }
     }
 
+    /// Rows that were left out, by why; `later` had no data, or no return, as the end told.
+    pub(super) fn skipped(&self, later: [u64; 2]) -> Vec<(&'static str, u64)> {
+        let counts = [
+            ("not-finite", self.dropped as u64),
+            ("invalid", self.invalid as u64),
+            ("no-data", self.no_data + later[0]),
+            ("no-return", self.no_returns + later[1]),
+        ];
+        counts.into_iter().filter(|(_, count)| *count > 0).collect()
+    }
+
     /// The arrays of all rows, where no block was taken.
     pub(super) fn finish(mut self, keep: bool) -> RawCloud {
         let verdict = self.verdict(keep);
@@ -359,23 +379,10 @@ impl Table {
         cloud.attributes = attributes;
         cloud.viewpoints = self.stations.viewpoints(cloud.points());
         cloud.dropped = self.dropped + self.invalid;
-        cloud.skipped = skipped(self.dropped, self.invalid);
-        cloud.skipped.extend(
-            [("no-data", no_data), ("no-return", no_return)]
-                .into_iter()
-                .filter(|(_, count)| *count > 0),
-        );
+        cloud.skipped = self.skipped([no_data, no_return]);
         cloud.replaced = self.replaced;
         cloud
     }
-}
-
-/// Rows that were left out as they came, by why.
-pub(super) fn skipped(dropped: usize, invalid: usize) -> Vec<(&'static str, u64)> {
-    [("not-finite", dropped as u64), ("invalid", invalid as u64)]
-        .into_iter()
-        .filter(|(_, count)| *count > 0)
-        .collect()
 }
 
 impl Block {

@@ -37,7 +37,7 @@ const MOST_AHEAD: usize = 1 << 22;
 /// Whether the first line that says something is a row, a count, or names x, y and z.
 pub(super) fn looks_like(head: &[u8]) -> bool {
     const MOST_LINES: usize = 100;
-    let lines: Vec<Numbered> = without_mark(head)
+    let lines: Vec<Numbered> = head
         .split(|&b| b == b'\n' || b == b'\r')
         .take(MOST_LINES)
         .map(|line| Numbered {
@@ -46,11 +46,6 @@ pub(super) fn looks_like(head: &[u8]) -> bool {
         })
         .collect();
     plan::looks_like(&lines)
-}
-
-/// Without the byte order mark of UTF-8.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// What a line is.
@@ -119,10 +114,6 @@ impl Parser for Xyz {
             if input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]) {
                 return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
             }
-            if input.rest().len() < 3 && !input.last {
-                return Ok(Step::More);
-            }
-            input.skip((input.rest().len() - without_mark(input.rest()).len()) as u64);
         }
         while let Some(line) = input.line()? {
             let number = input.place.line;

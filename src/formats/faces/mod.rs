@@ -228,6 +228,14 @@ pub struct Sampling {
     pub missing: Vec<String>,
 }
 
+impl Sampling {
+    /// What was left out, by why.
+    pub(super) fn skipped(&self) -> Vec<(&'static str, u64)> {
+        let counts = [("unused-vertices", self.unused), ("broken-faces", self.broken)];
+        counts.into_iter().filter(|(_, count)| *count > 0).collect()
+    }
+}
+
 /// A table of points of the faces over the vertices of another; `None` where the faces have no area: the vertices are then all
 /// there is. Vertices that no face uses stay as points where they are more than those that faces use, and not all at one place.
 pub(super) fn sample(

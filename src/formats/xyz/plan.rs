@@ -5,7 +5,7 @@ use super::super::input::Input;
 use super::super::options::ReadOptions;
 use super::super::preview::Preview;
 use super::super::table::Columns;
-use super::super::text::quote;
+use super::super::text::{decoded, quote};
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value, hex};
 use super::guess::{Column, guess, is_colmap};
 use super::names;
@@ -357,9 +357,7 @@ impl Grid {
                 grid.columns.resize_with(tokens.len(), Column::default);
             }
             if grid.texts.len() < SHOWN {
-                let text = |token: &&[u8]| {
-                    String::from_utf8_lossy(&token[..token.len().min(40)]).into_owned()
-                };
+                let text = |token: &&[u8]| decoded(&token[..token.len().min(40)]);
                 grid.texts
                     .push(tokens.iter().take(MOST_SHOWN).map(text).collect());
             }
@@ -513,7 +511,7 @@ fn header_names<'a>(
 fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for token in dialect.split(text) {
-        let name = String::from_utf8_lossy(token).into_owned();
+        let name = decoded(token);
         let open =
             |name: &String| name.matches(['(', '[']).count() > name.matches([')', ']']).count();
         match names.last_mut() {
