@@ -5,7 +5,9 @@
 mod mesh_files;
 
 use mesh_files::{glb, png};
-use pointweave::formats::{FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, Want, read_beside, read_with};
+use pointweave::formats::{
+    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, Want, read_beside, read_with,
+};
 
 fn values(cloud: &RawCloud) -> Vec<[f64; 3]> {
     let flat: Vec<f64> = match &cloud.positions {
@@ -16,11 +18,23 @@ fn values(cloud: &RawCloud) -> Vec<[f64; 3]> {
 }
 
 fn normals(cloud: &RawCloud) -> Vec<[f32; 3]> {
-    cloud.normals.as_ref().expect("faces have normals").as_chunks().0.to_vec()
+    cloud
+        .normals
+        .as_ref()
+        .expect("faces have normals")
+        .as_chunks()
+        .0
+        .to_vec()
 }
 
 fn colors(cloud: &RawCloud) -> Vec<[u8; 3]> {
-    cloud.colors.as_ref().expect("colours").as_chunks().0.to_vec()
+    cloud
+        .colors
+        .as_ref()
+        .expect("colours")
+        .as_chunks()
+        .0
+        .to_vec()
 }
 
 fn sampled(file: &[u8], format: Format) -> RawCloud {
@@ -31,12 +45,19 @@ fn sampled(file: &[u8], format: Format) -> RawCloud {
 
 /// Squared distance to the nearest other point, for some of the points.
 fn spacings(points: &[[f64; 3]]) -> Vec<f64> {
-    let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt();
+    let distance = |a: [f64; 3], b: [f64; 3]| {
+        (0..3)
+            .map(|k| (a[k] - b[k]) * (a[k] - b[k]))
+            .sum::<f64>()
+            .sqrt()
+    };
     (0..points.len())
         .step_by(points.len() / 300)
         .map(|i| {
             let others = points.iter().enumerate().filter(|&(j, _)| j != i);
-            others.map(|(_, &other)| distance(points[i], other)).fold(f64::INFINITY, f64::min)
+            others
+                .map(|(_, &other)| distance(points[i], other))
+                .fold(f64::INFINITY, f64::min)
         })
         .collect()
 }
@@ -48,12 +69,17 @@ const SQUARES: &str = "OFF\n8 2 0\n0 0 0\n3 0 0\n3 3 0\n0 3 0\n10 0 0\n11 0 0\n1
 fn points_are_as_many_as_the_area_says_and_keep_apart() {
     let cloud = sampled(SQUARES.as_bytes(), Format::Off);
     let points = values(&cloud);
-    assert_eq!((points.len(), cloud.sampling.points, cloud.faces), (100_000, 100_000, 2));
+    assert_eq!(
+        (points.len(), cloud.sampling.points, cloud.faces),
+        (100_000, 100_000, 2)
+    );
     let large = points.iter().filter(|p| p[0] < 5.0).count();
     assert!(large.abs_diff(90_000) < 100, "{large}");
     // Quarters of the large square, too.
     for quarter in 0..4 {
-        let inside = |p: &&[f64; 3]| p[0] < 3.0 && (usize::from(p[0] > 1.5) + 2 * usize::from(p[1] > 1.5)) == quarter;
+        let inside = |p: &&[f64; 3]| {
+            p[0] < 3.0 && (usize::from(p[0] > 1.5) + 2 * usize::from(p[1] > 1.5)) == quarter
+        };
         let count = points.iter().filter(inside).count();
         assert!(count.abs_diff(22_500) < 100, "{count}");
     }
@@ -62,7 +88,10 @@ fn points_are_as_many_as_the_area_says_and_keep_apart() {
     let apart = spacings(&points);
     let least = apart.iter().fold(f64::INFINITY, |a, &b| a.min(b));
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-    assert!(least > 0.5 * packed && mean > 0.7 * packed, "{least} {mean} of {packed}");
+    assert!(
+        least > 0.5 * packed && mean > 0.7 * packed,
+        "{least} {mean} of {packed}"
+    );
 }
 
 #[test]
@@ -82,13 +111,23 @@ fn large_meshes_get_four_points_a_triangle() {
 
 fn cube_stl() -> Vec<u8> {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|x| x as f32);
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
     let mut file = vec![b' '; 80];
     file.extend(12u32.to_le_bytes());
     for [a, b, c, d] in quads {
         for triangle in [[a, b, c], [a, c, d]] {
             file.extend([0; 12]);
-            triangle.iter().flat_map(|&i| corner(i)).for_each(|x| file.extend(x.to_le_bytes()));
+            triangle
+                .iter()
+                .flat_map(|&i| corner(i))
+                .for_each(|x| file.extend(x.to_le_bytes()));
             file.extend([0; 2]);
         }
     }
@@ -100,7 +139,9 @@ fn a_cube_stays_one_and_looks_outward() {
     let cloud = sampled(&cube_stl(), Format::Stl);
     for (p, n) in values(&cloud).into_iter().zip(normals(&cloud)) {
         // On one side of the cube, whose normal it has: creases are not rounded.
-        let axis = (0..3).find(|&k| n[k].abs() == 1.0).expect("a normal along an axis");
+        let axis = (0..3)
+            .find(|&k| n[k].abs() == 1.0)
+            .expect("a normal along an axis");
         assert_eq!(p[axis], if n[axis] > 0.0 { 1.0 } else { 0.0 });
         assert!(p.iter().all(|x| (0.0..=1.0).contains(x)));
     }
@@ -114,12 +155,19 @@ fn normals_of_the_file_are_interpolated_and_smooth_ones_are_made() {
     for (p, n) in values(&cloud).into_iter().zip(normals(&cloud)) {
         let [x, y] = [1.0 - p[0], p[0]];
         let length = (x * x + y * y).sqrt();
-        assert!((f64::from(n[0]) - x / length).abs() < 1e-3 && (f64::from(n[1]) - y / length).abs() < 1e-3, "{p:?} {n:?}");
+        assert!(
+            (f64::from(n[0]) - x / length).abs() < 1e-3
+                && (f64::from(n[1]) - y / length).abs() < 1e-3,
+            "{p:?} {n:?}"
+        );
     }
     // Without normals: straight up at the ridge, which is too flat for a crease.
     let silent = format!("{roof}f 1 2 5 4\nf 2 3 6 5\n");
     let cloud = sampled(silent.as_bytes(), Format::Obj);
-    let ridge = values(&cloud).into_iter().zip(normals(&cloud)).filter(|(p, _)| (p[0] - 1.0).abs() < 0.01);
+    let ridge = values(&cloud)
+        .into_iter()
+        .zip(normals(&cloud))
+        .filter(|(p, _)| (p[0] - 1.0).abs() < 0.01);
     assert!(ridge.map(|(_, n)| n).all(|n| n[2] > 0.999));
 }
 
@@ -130,7 +178,10 @@ fn vertex_colours_and_scalars_are_interpolated_and_labels_are_not() {
                 0 0 0 0 0 0 0 1\n1 0 0 200 0 0 0.5 2\n0 1 0 0 100 0 0.5 7\n3 0 1 2\n";
     let cloud = sampled(file.as_bytes(), Format::Ply);
     for ((i, p), c) in values(&cloud).into_iter().enumerate().zip(colors(&cloud)) {
-        assert!((200.0 * p[0] - f64::from(c[0])).abs() < 0.51 && (100.0 * p[1] - f64::from(c[1])).abs() < 0.51);
+        assert!(
+            (200.0 * p[0] - f64::from(c[0])).abs() < 0.51
+                && (100.0 * p[1] - f64::from(c[1])).abs() < 0.51
+        );
         let [quality, label] = [0, 1].map(|k| f64::from(cloud.attributes[k].values[i]));
         assert!((quality - 0.5 * (p[0] + p[1])).abs() < 1e-6);
         assert!([1.0, 2.0, 7.0].contains(&label));
@@ -139,33 +190,63 @@ fn vertex_colours_and_scalars_are_interpolated_and_labels_are_not() {
 
 #[test]
 fn faces_have_colours_of_their_own() {
-    let file = SQUARES.replace("4 0 1 2 3", "4 0 1 2 3 255 0 128").replace("4 4 5 6 7", "4 4 5 6 7 0.0 1.0 0.2");
+    let file = SQUARES
+        .replace("4 0 1 2 3", "4 0 1 2 3 255 0 128")
+        .replace("4 4 5 6 7", "4 4 5 6 7 0.0 1.0 0.2");
     let cloud = sampled(file.as_bytes(), Format::Off);
     for (p, c) in values(&cloud).into_iter().zip(colors(&cloud)) {
-        assert_eq!(c, if p[0] < 5.0 { [255, 0, 128] } else { [0, 255, 51] });
+        assert_eq!(
+            c,
+            if p[0] < 5.0 {
+                [255, 0, 128]
+            } else {
+                [0, 255, 51]
+            }
+        );
     }
 }
 
 /// Red, green, blue and white, from the left to the right and from the top down.
 fn four() -> Vec<u8> {
-    png(2, 2, &[[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]])
+    png(
+        2,
+        2,
+        &[
+            [255, 0, 0, 255],
+            [0, 255, 0, 255],
+            [0, 0, 255, 255],
+            [255, 255, 255, 255],
+        ],
+    )
 }
 
 #[test]
 fn an_obj_has_the_colours_of_its_materials() {
     let obj = "mtllib my scan.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\nv 4 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                usemtl photo\nf 1/1 2/2 3/3 4/4\nusemtl plain\nf -3 -2 -1\n";
-    let mtl = b"newmtl photo\nKd 0.2 0.2 0.2\nmap_Kd -clamp on tex\\four.png\nnewmtl plain\nKd 1 0.5 0\n";
+    let mtl =
+        b"newmtl photo\nKd 0.2 0.2 0.2\nmap_Kd -clamp on tex\\four.png\nnewmtl plain\nKd 1 0.5 0\n";
     let mut asked = Vec::new();
     let mut beside = |name: &str| {
         asked.push(name.to_string());
-        if name == "my scan.mtl" { Some(mtl.to_vec()) } else { Some(four()) }
+        if name == "my scan.mtl" {
+            Some(mtl.to_vec())
+        } else {
+            Some(four())
+        }
     };
-    let cloud = read_beside(obj.as_bytes(), Format::Obj, &ReadOptions::default(), &mut beside).unwrap();
+    let cloud = read_beside(
+        obj.as_bytes(),
+        Format::Obj,
+        &ReadOptions::default(),
+        &mut beside,
+    )
+    .unwrap();
     assert_eq!(asked, ["my scan.mtl", "tex\\four.png"]);
     for (p, c) in values(&cloud).into_iter().zip(colors(&cloud)) {
         // Beyond the outer centres of pixels there is nothing to mix.
-        let corner = |x: f64, y: f64| p[0] < 2.0 && (p[0] - x).abs() < 0.25 && (p[1] - y).abs() < 0.25;
+        let corner =
+            |x: f64, y: f64| p[0] < 2.0 && (p[0] - x).abs() < 0.25 && (p[1] - y).abs() < 0.25;
         let expected = match () {
             _ if corner(0.0, 1.0) => [255, 0, 0],
             _ if corner(1.0, 1.0) => [0, 255, 0],
@@ -191,7 +272,8 @@ fn textured(material: &str, sampler: &str, extra: &str) -> RawCloud {
 fn color_at(cloud: &RawCloud, x: f64, y: f64) -> [u8; 3] {
     let points = values(cloud);
     let apart = |p: &[f64; 3]| (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);
-    let nearest = (0..points.len()).min_by(|&a, &b| apart(&points[a]).total_cmp(&apart(&points[b])));
+    let nearest =
+        (0..points.len()).min_by(|&a, &b| apart(&points[a]).total_cmp(&apart(&points[b])));
     colors(cloud)[nearest.unwrap()]
 }
 
@@ -200,18 +282,26 @@ fn a_glb_has_the_colours_of_its_texture() {
     // Places of glTF start at the top.
     let base = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
     let cloud = textured(base, "{}", "");
-    assert_eq!([(0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)].map(|(x, y)| color_at(&cloud, x, y)).map(|[r, g, b]| [r > 200, g > 200, b > 200]), [
-        [true, false, false],
-        [false, true, false],
-        [false, false, true],
-        [true, true, true],
-    ]);
+    assert_eq!(
+        [(0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)]
+            .map(|(x, y)| color_at(&cloud, x, y))
+            .map(|[r, g, b]| [r > 200, g > 200, b > 200]),
+        [
+            [true, false, false],
+            [false, true, false],
+            [false, false, true],
+            [true, true, true],
+        ]
+    );
     // At the border of a repeated picture it meets its other side.
     assert!(color_at(&cloud, 0.0, 0.25).iter().all(|&c| c < 140));
     let clamped = textured(base, r#"{"wrapS":33071,"wrapT":33071}"#, "");
     assert_eq!(color_at(&clamped, 0.0, 0.0), [255, 0, 0]);
     let nearest = textured(base, r#"{"magFilter":9728}"#, "");
-    assert_eq!([color_at(&nearest, 0.48, 0.2), color_at(&nearest, 0.52, 0.2)], [[255, 0, 0], [0, 255, 0]]);
+    assert_eq!(
+        [color_at(&nearest, 0.48, 0.2), color_at(&nearest, 0.52, 0.2)],
+        [[255, 0, 0], [0, 255, 0]]
+    );
 }
 
 #[test]
@@ -228,16 +318,29 @@ fn factors_multiply_linear_light_and_transforms_move_the_texture() {
     let turned = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"rotation":1.5707963267948966}}}}}"#;
     // (u, v) becomes (v, -u): what was to the right is at the top.
     let cloud = textured(turned, nearest, "");
-    assert_eq!([color_at(&cloud, 0.2, 0.2), color_at(&cloud, 0.8, 0.2), color_at(&cloud, 0.2, 0.8)], [[0, 0, 255], [255, 0, 0], [255, 255, 255]]);
+    assert_eq!(
+        [
+            color_at(&cloud, 0.2, 0.2),
+            color_at(&cloud, 0.8, 0.2),
+            color_at(&cloud, 0.2, 0.8)
+        ],
+        [[0, 0, 255], [255, 0, 0], [255, 255, 255]]
+    );
     let plain = r#"{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0.2140411,1]}}"#;
-    assert_eq!(color_at(&textured(plain, "{}", ""), 0.5, 0.5), [255, 0, 128]);
+    assert_eq!(
+        color_at(&textured(plain, "{}", ""), 0.5, 0.5),
+        [255, 0, 128]
+    );
 }
 
 #[test]
 fn holes_of_a_texture_have_no_points() {
     let mask = r#"{"alphaMode":"MASK","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
     let picture = png(2, 1, &[[9, 9, 9, 255], [9, 9, 9, 0]]);
-    let cloud = sampled(&glb(mask, r#"{"magFilter":9728}"#, "", &picture), Format::Glb);
+    let cloud = sampled(
+        &glb(mask, r#"{"magFilter":9728}"#, "", &picture),
+        Format::Glb,
+    );
     assert!(values(&cloud).iter().all(|p| p[0] <= 0.5));
     assert!(cloud.points().abs_diff(50_000) < 200);
 }
@@ -245,7 +348,10 @@ fn holes_of_a_texture_have_no_points() {
 #[test]
 fn a_mirrored_node_keeps_its_outer_side() {
     let material = "{}";
-    let cloud = sampled(&glb(material, "{}", r#","scale":[-1,1,1]"#, &four()), Format::Glb);
+    let cloud = sampled(
+        &glb(material, "{}", r#","scale":[-1,1,1]"#, &four()),
+        Format::Glb,
+    );
     assert!(values(&cloud).iter().all(|p| (-1.0..=0.0).contains(&p[0])));
     assert!(normals(&cloud).iter().all(|n| n[2] == 1.0));
 }
@@ -260,14 +366,24 @@ fn strips_and_polygons_become_triangles() {
     // An arrowhead: nothing in its notch.
     let arrow = "OFF\n4 1 0\n0 0 0\n2 -1 0\n1 0 0\n2 1 0\n4 0 1 2 3\n";
     let cloud = sampled(arrow.as_bytes(), Format::Off);
-    assert!(values(&cloud).iter().all(|p| p[1].abs() >= p[0] - 1.0 - 1e-6));
+    assert!(
+        values(&cloud)
+            .iter()
+            .all(|p| p[1].abs() >= p[0] - 1.0 - 1e-6)
+    );
 }
 
 #[test]
 fn vertices_are_to_be_had_and_stay_where_there_is_no_area() {
-    let options = ReadOptions { faces: FaceMode::Vertices, ..ReadOptions::default() };
+    let options = ReadOptions {
+        faces: FaceMode::Vertices,
+        ..ReadOptions::default()
+    };
     let cloud = read_with(SQUARES.as_bytes(), Format::Off, &options).unwrap();
-    assert_eq!((cloud.points(), cloud.faces, cloud.sampling.points), (8, 2, 0));
+    assert_eq!(
+        (cloud.points(), cloud.faces, cloud.sampling.points),
+        (8, 2, 0)
+    );
     let line = "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
     let cloud = read_with(line.as_bytes(), Format::Obj, &ReadOptions::default()).unwrap();
     assert_eq!((cloud.points(), cloud.sampling.points), (3, 0));
@@ -307,7 +423,9 @@ fn the_same_points_come_from_slices_and_again() {
         assert_eq!(reading.want(), None::<Want>);
     }
     let (block, _) = reading.take_block().unwrap();
-    let Positions::F64(values) = block.positions else { panic!("the verdict narrows") };
+    let Positions::F64(values) = block.positions else {
+        panic!("the verdict narrows")
+    };
     let narrow: Vec<f32> = values.iter().map(|&x| x as f32).collect();
     assert_eq!(Positions::F32(narrow), whole.positions);
     assert_eq!(reading.summary().sampling.points, 100_000);
@@ -315,7 +433,10 @@ fn the_same_points_come_from_slices_and_again() {
 
 #[test]
 fn far_away_meshes_stay_exact() {
-    let file = SQUARES.replace("0 0 0\n3 0 0\n3 3 0\n0 3 0", "500000 4000000 0\n500003 4000000 0\n500003 4000003 0\n500000 4000003 0");
+    let file = SQUARES.replace(
+        "0 0 0\n3 0 0\n3 3 0\n0 3 0",
+        "500000 4000000 0\n500003 4000000 0\n500003 4000003 0\n500000 4000003 0",
+    );
     let cloud = sampled(file.as_bytes(), Format::Off);
     assert!(matches!(cloud.positions, Positions::F64(_)));
 }

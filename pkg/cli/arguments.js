@@ -1,7 +1,8 @@
 /** The command line to what is to be done. Whatever is wrong with it is found here, before a file is opened. */
 import { basename, extname, join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { ENGINE, nearest } from '../engine/options.js';
+import { ENGINE } from '../engine/options.js';
+import { nearest } from '../engine/rules.js';
 import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';

@@ -93,7 +93,7 @@ async function read({ compile, loadGlue }, wasmUrl, data, options) {
   const build = await readerOf(file, own.format);
   const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
   const host = await inProcessHost(glue, { build, module });
-  const { beside, ...given } = { name: data.name, ...own };
+  const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
   const decode = async (/** @type {Uint8Array} */ bytes) => {
     const [module, glue] = await Promise.all([compile('pictures', wasmUrl), loadGlue('pictures')]);
     const pictures = await inProcessHost(glue, { build: 'pictures', module });

@@ -111,7 +111,7 @@ export class Engine {
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
     const file = slicesOf(data, transfer);
-    const { beside, ...given } = { name: data.name, ...own };
+    const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
     return this.#queued(watch, async (signal) => {
       const reader = await readerOf(file, own.format);
       const decode = (/** @type {Uint8Array} */ bytes) => this.#withModule('pictures', signal, (ask) => ask({ call: 'decodePicture', args: [bytes] }));

@@ -36,7 +36,11 @@ impl Crs {
     fn unit_of_keys(&self) -> Option<Unit> {
         let keys = self.keys.get(4..)?.chunks_exact(4);
         // A value is in the key itself where no table holds it.
-        let value = |wanted: u16| keys.clone().find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3]);
+        let value = |wanted: u16| {
+            keys.clone()
+                .find(|key| key[0] == wanted && key[1] == 0)
+                .map(|key| key[3])
+        };
         if value(MODEL_TYPE) == Some(GEOGRAPHIC) {
             return Some(Unit::Degree);
         }
@@ -45,7 +49,9 @@ impl Crs {
             (Some(9002), _) => Some(Unit::Foot),
             (Some(9003), _) => Some(Unit::SurveyFoot),
             // UTM: WGS 84 north and south, NAD 83, ETRS 89.
-            (None, Some(32601..=32660 | 32701..=32760 | 26901..=26923 | 25828..=25838)) => Some(Unit::Metre),
+            (None, Some(32601..=32660 | 32701..=32760 | 26901..=26923 | 25828..=25838)) => {
+                Some(Unit::Metre)
+            }
             _ => None,
         }
     }
@@ -57,14 +63,22 @@ fn unit_of_text(text: &str) -> Option<Unit> {
     const GEOGRAPHIC: [&str; 4] = ["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS"];
     const LOCAL: [&str; 3] = ["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"];
     // Units of angles, heights and parameters are of these.
-    const OTHERS: [&str; 6] = ["BASEGEOGCRS", "BASEGEODCRS", "CONVERSION", "VERT_CS", "VERTCRS", "ANGLEUNIT"];
+    const OTHERS: [&str; 6] = [
+        "BASEGEOGCRS",
+        "BASEGEODCRS",
+        "CONVERSION",
+        "VERT_CS",
+        "VERTCRS",
+        "ANGLEUNIT",
+    ];
     let mut open: Vec<String> = Vec::new();
     let (mut geographic, mut found) = (false, None);
     for (keyword, inside) in nodes(text) {
         open.truncate(inside);
         let is_in = |names: &[&str]| open.iter().any(|name| names.contains(&name.as_str()));
         let is_unit = keyword.name == "UNIT" || keyword.name == "LENGTHUNIT";
-        if is_unit && (is_in(&PROJECTED) || is_in(&LOCAL)) && !is_in(&GEOGRAPHIC) && !is_in(&OTHERS) {
+        if is_unit && (is_in(&PROJECTED) || is_in(&LOCAL)) && !is_in(&GEOGRAPHIC) && !is_in(&OTHERS)
+        {
             found = keyword.number.and_then(Unit::of_metres);
         }
         geographic |= GEOGRAPHIC.contains(&keyword.name.as_str()) && !is_in(&PROJECTED);
@@ -120,17 +134,32 @@ mod tests {
 
     fn of_text(text: &str) -> Option<Unit> {
         let wkt = Some(text.to_string());
-        Crs { wkt, ..Crs::default() }.unit()
+        Crs {
+            wkt,
+            ..Crs::default()
+        }
+        .unit()
     }
 
     #[test]
     fn units_of_well_known_text() {
         let geographic = r#"GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.25]],UNIT["degree",0.0174532925]]"#;
-        let projected = |unit: &str| format!(r#"PROJCS["a [b]",{geographic},PROJECTION["x"],{unit},AXIS["X",EAST]]"#);
+        let projected = |unit: &str| {
+            format!(r#"PROJCS["a [b]",{geographic},PROJECTION["x"],{unit},AXIS["X",EAST]]"#)
+        };
         assert_eq!(of_text(geographic), Some(Unit::Degree));
-        assert_eq!(of_text(&projected(r#"UNIT["metre", 1]"#)), Some(Unit::Metre));
-        assert_eq!(of_text(&projected(r#"UNIT["US survey foot",0.3048006096012192]"#)), Some(Unit::SurveyFoot));
-        let both = format!(r#"COMPD_CS["c",{},VERT_CS["v",UNIT["foot",0.3048]]]"#, projected(r#"UNIT["metre",1]"#));
+        assert_eq!(
+            of_text(&projected(r#"UNIT["metre", 1]"#)),
+            Some(Unit::Metre)
+        );
+        assert_eq!(
+            of_text(&projected(r#"UNIT["US survey foot",0.3048006096012192]"#)),
+            Some(Unit::SurveyFoot)
+        );
+        let both = format!(
+            r#"COMPD_CS["c",{},VERT_CS["v",UNIT["foot",0.3048]]]"#,
+            projected(r#"UNIT["metre",1]"#)
+        );
         assert_eq!(of_text(&both), Some(Unit::Metre));
         let new = r#"PROJCRS["n",BASEGEOGCRS["b",ELLIPSOID["e",6378137,298,LENGTHUNIT["metre",1]]],CONVERSION["c",PARAMETER["p",1,LENGTHUNIT["metre",1]]],CS[Cartesian,2],AXIS["e",east],LENGTHUNIT["foot",0.3048]]"#;
         assert_eq!(of_text(new), Some(Unit::Foot));
@@ -141,12 +170,24 @@ mod tests {
     #[test]
     fn units_of_keys() {
         let of = |keys: &[[u16; 4]]| {
-            let keys = [[1, 1, 0, keys.len() as u16]].iter().chain(keys).flatten().copied().collect();
-            Crs { keys, ..Crs::default() }.unit()
+            let keys = [[1, 1, 0, keys.len() as u16]]
+                .iter()
+                .chain(keys)
+                .flatten()
+                .copied()
+                .collect();
+            Crs {
+                keys,
+                ..Crs::default()
+            }
+            .unit()
         };
         assert_eq!(of(&[[1024, 0, 1, 1], [3076, 0, 1, 9002]]), Some(Unit::Foot));
         assert_eq!(of(&[[1024, 0, 1, 2]]), Some(Unit::Degree));
-        assert_eq!(of(&[[1024, 0, 1, 1], [3072, 0, 1, 32633]]), Some(Unit::Metre));
+        assert_eq!(
+            of(&[[1024, 0, 1, 1], [3072, 0, 1, 32633]]),
+            Some(Unit::Metre)
+        );
         assert_eq!(of(&[[1024, 0, 1, 1]]), None);
     }
 

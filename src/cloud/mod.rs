@@ -1,8 +1,11 @@
 //! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
 
+pub(crate) mod copies;
 mod crs;
+pub mod morton;
 pub mod neighborhood;
 pub mod octree;
+pub mod queries;
 mod unit;
 mod viewpoints;
 

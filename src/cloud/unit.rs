@@ -64,7 +64,10 @@ impl Unit {
 
     /// The unit of that length in metres, to one part in a million: the two feet are two parts apart.
     pub fn of_metres(metres: f64) -> Option<Unit> {
-        let near = |unit: &Unit| unit.metres().is_some_and(|own| (metres / own - 1.0).abs() < 1e-6);
+        let near = |unit: &Unit| {
+            unit.metres()
+                .is_some_and(|own| (metres / own - 1.0).abs() < 1e-6)
+        };
         Unit::ALL.into_iter().find(near)
     }
 

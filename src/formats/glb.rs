@@ -60,7 +60,11 @@ impl Parser for Glb {
             let mut have = parts
                 .iter()
                 .map(|part| part.primitive.attributes.contains_key(name));
-            if wanted { have.any(|has| has) } else { !parts.is_empty() && have.all(|has| has) }
+            if wanted {
+                have.any(|has| has)
+            } else {
+                !parts.is_empty() && have.all(|has| has)
+            }
         };
         let columns = Columns {
             normal: has("NORMAL").then_some([3, 4, 5]),
@@ -125,7 +129,9 @@ impl Glb {
             Some(index) => Some(Accessor::open(document, index, buffer, input)?),
             None => None,
         };
-        let corners = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        let corners = indices
+            .as_ref()
+            .map_or(positions.count, |indices| indices.count);
         let mode = part.primitive.mode.unwrap_or(TRIANGLES);
         self.count += match mode {
             TRIANGLES => corners as u64 / 3,
@@ -159,16 +165,29 @@ impl Glb {
         };
         faces.places.extend((0..positions.count).map(place));
         let row = |corner: usize| {
-            let i = indices.as_ref().map_or(corner, |indices| indices.triple(corner)[0] as usize);
+            let i = indices
+                .as_ref()
+                .map_or(corner, |indices| indices.triple(corner)[0] as usize);
             // A vertex that the part has not is none of the file.
-            if i < positions.count { first + i as u32 } else { NONE }
+            if i < positions.count {
+                first + i as u32
+            } else {
+                NONE
+            }
         };
         let mirrored = part.transform.mirrors();
         let mut push = |[a, b, c]: [usize; 3]| {
             let [a, b, c] = [row(a), row(b), row(c)];
             let rows = if mirrored { [a, c, b] } else { [a, b, c] };
             let look = look.map(|look| look as u32);
-            faces.push(Face { rows: &rows, look, ..Face::default() }, |_| None);
+            faces.push(
+                Face {
+                    rows: &rows,
+                    look,
+                    ..Face::default()
+                },
+                |_| None,
+            );
         };
         match mode {
             TRIANGLES => (0..corners / 3).for_each(|i| push([3 * i, 3 * i + 1, 3 * i + 2])),

@@ -64,14 +64,14 @@ use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
 use crate::pipeline::Surface;
 pub use detect::detect;
 pub use faces::{FaceMode, Picture, Sampling, Want};
-pub use pictures::decode as decode_picture;
-pub use reading::{Reading, Summary};
-pub use stations::{Run, Stations};
 pub use options::ReadOptions;
 #[cfg(feature = "packed")]
 pub use packed::{Archive, Entry};
+pub use pictures::decode as decode_picture;
 pub use preview::Preview;
+pub use reading::{Reading, Summary};
 pub use sentinels::LeftOut;
+pub use stations::{Run, Stations};
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
@@ -383,7 +383,11 @@ impl RawCloud {
         cloud.unit = self.unit;
         cloud.crs = self.crs.clone();
         // Points of faces are no measurements, and the results say so.
-        cloud.faces = if self.sampling.points > 0 { self.faces } else { 0 };
+        cloud.faces = if self.sampling.points > 0 {
+            self.faces
+        } else {
+            0
+        };
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 

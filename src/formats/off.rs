@@ -116,7 +116,9 @@ impl Off {
         match (self.kind, self.counts) {
             (None, _) => "\"OFF\"".into(),
             (_, None) => "the counts of vertices and faces".into(),
-            (_, Some([vertices, _])) if self.row < vertices => format!("one of {vertices} vertices"),
+            (_, Some([vertices, _])) if self.row < vertices => {
+                format!("one of {vertices} vertices")
+            }
             (_, Some([_, faces])) => format!("one of {faces} faces"),
         }
     }
@@ -216,7 +218,11 @@ fn push_face(values: &[f64], faces: &mut Faces, table: &Table) {
     let rows: Vec<u32> = values.iter().skip(1).take(count).map(row).collect();
     let color = match values.get(count.saturating_add(1)..) {
         Some(&[r, g, b]) | Some(&[r, g, b, _]) => {
-            let scale = if [r, g, b].iter().all(|&c| c <= 1.0) { 255.0 } else { 1.0 };
+            let scale = if [r, g, b].iter().all(|&c| c <= 1.0) {
+                255.0
+            } else {
+                1.0
+            };
             Some([r, g, b].map(|c| (scale * c).round() as u8))
         }
         _ => None,

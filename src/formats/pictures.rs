@@ -26,10 +26,13 @@ const MOST_BYTES: usize = 1 << 28;
 #[cfg(feature = "pictures")]
 fn png(bytes: &[u8]) -> Option<Picture> {
     use png::{ColorType, Decoder, Limits, Transformations};
-    let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(bytes), Limits { bytes: MOST_BYTES });
+    let mut decoder =
+        Decoder::new_with_limits(std::io::Cursor::new(bytes), Limits { bytes: MOST_BYTES });
     decoder.set_transformations(Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().ok()?;
-    let size = reader.output_buffer_size().filter(|&size| size <= MOST_BYTES)?;
+    let size = reader
+        .output_buffer_size()
+        .filter(|&size| size <= MOST_BYTES)?;
     let mut content = vec![0; size];
     let info = reader.next_frame(&mut content).ok()?;
     content.truncate(info.buffer_size());
@@ -56,7 +59,9 @@ fn jpeg(bytes: &[u8]) -> Option<Picture> {
         .set_use_unsafe(false);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().ok()?;
-    decoder.output_buffer_size().filter(|&size| size <= MOST_BYTES)?;
+    decoder
+        .output_buffer_size()
+        .filter(|&size| size <= MOST_BYTES)?;
     let content = decoder.decode().ok()?;
     let (width, height) = decoder.dimensions()?;
     Picture::new(width, height, rgba(&content, |&[r, g, b]| [r, g, b, 255]))
@@ -67,7 +72,9 @@ fn webp(bytes: &[u8]) -> Option<Picture> {
     let mut decoder = image_webp::WebPDecoder::new(std::io::Cursor::new(bytes)).ok()?;
     decoder.set_memory_limit(MOST_BYTES);
     let (width, height) = decoder.dimensions();
-    let size = decoder.output_buffer_size().filter(|&size| size <= MOST_BYTES)?;
+    let size = decoder
+        .output_buffer_size()
+        .filter(|&size| size <= MOST_BYTES)?;
     let mut content = vec![0; size];
     decoder.read_image(&mut content).ok()?;
     let pixels = match decoder.has_alpha() {

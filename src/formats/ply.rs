@@ -60,7 +60,8 @@ impl Parser for Ply {
                 let (points, columns) = header.points(input)?;
                 let most = header.most_rows(points, input);
                 *table = Some(Table::new(columns, Some(most)));
-                let has_faces = |element: &Element| Layout::of(element).is_some() && element.rows > 0;
+                let has_faces =
+                    |element: &Element| Layout::of(element).is_some() && element.rows > 0;
                 let last = match &mut self.faces {
                     Some(faces) => {
                         faces::looks(&header, faces);
@@ -131,19 +132,35 @@ struct Rows {
 
 impl Rows {
     /// Reads what is at hand.
-    fn read(&mut self, input: &mut Input, table: &mut Table, faces: &mut Option<Faces>) -> Result<Step> {
+    fn read(
+        &mut self,
+        input: &mut Input,
+        table: &mut Table,
+        faces: &mut Option<Faces>,
+    ) -> Result<Step> {
         while self.element <= self.last {
             let element = &self.header.elements[self.element];
             let points = self.element == self.points;
-            let layout = faces.as_mut().and_then(|faces| Some((Layout::of(element)?, faces)));
+            let layout = faces
+                .as_mut()
+                .and_then(|faces| Some((Layout::of(element)?, faces)));
             let cells = (&mut self.values, &mut self.lists);
             if points {
-                self.row += read_rows(&self.header, element, self.row, cells, input, |row, _| table.push(row))?;
+                self.row += read_rows(&self.header, element, self.row, cells, input, |row, _| {
+                    table.push(row)
+                })?;
             } else if let Some((layout, faces)) = layout {
                 let known = (self.element > self.points).then_some(&*table);
-                self.row += read_rows(&self.header, element, self.row, cells, input, |row, lists| {
-                    layout.push(row, lists, faces, known);
-                })?;
+                self.row += read_rows(
+                    &self.header,
+                    element,
+                    self.row,
+                    cells,
+                    input,
+                    |row, lists| {
+                        layout.push(row, lists, faces, known);
+                    },
+                )?;
             } else if let Some(size) = element.fixed_size(self.header.encoding) {
                 let total = size.saturating_mul(element.rows);
                 self.skipped += input.skip(total - self.skipped);
@@ -293,7 +310,9 @@ fn read_binary_row(
                     return missing(input, start.saturating_add(length) as u64, element);
                 };
                 let values = content.chunks_exact(item.size());
-                lists.items.extend(values.map(|bytes| item.value(bytes, big_endian)));
+                lists
+                    .items
+                    .extend(values.map(|bytes| item.value(bytes, big_endian)));
                 lists.ends.push(lists.items.len());
                 at += length;
             }

@@ -211,10 +211,13 @@ impl Stl {
     fn vertex(&mut self, vertex: [f32; 3], table: &mut Table) {
         let row = table.next_row() as u32;
         // Both zeros are one.
-        let seen = *self.seen.entry(vertex.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-            table.push(&vertex.map(f64::from));
-            row
-        });
+        let seen = *self
+            .seen
+            .entry(vertex.map(|x| (x + 0.0).to_bits()))
+            .or_insert_with(|| {
+                table.push(&vertex.map(f64::from));
+                row
+            });
         self.corners.push(seen);
     }
 
@@ -222,7 +225,13 @@ impl Stl {
     fn triangle(&mut self) {
         if let Some(faces) = &mut self.faces {
             let rows = &self.corners;
-            faces.push(Face { rows, ..Face::default() }, |_| None);
+            faces.push(
+                Face {
+                    rows,
+                    ..Face::default()
+                },
+                |_| None,
+            );
         }
         self.corners.clear();
         self.triangles += 1;

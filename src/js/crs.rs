@@ -24,7 +24,9 @@ impl PointCrs {
         Crs {
             wkt: self.wkt(),
             keys: self.keys().map_or(Vec::new(), |keys| keys.to_vec()),
-            doubles: self.doubles().map_or(Vec::new(), |doubles| doubles.to_vec()),
+            doubles: self
+                .doubles()
+                .map_or(Vec::new(), |doubles| doubles.to_vec()),
             ascii: self.ascii().unwrap_or_default(),
         }
     }
@@ -32,14 +34,31 @@ impl PointCrs {
 
 /// Undefined where there is none.
 pub(crate) fn crs_to_js(crs: &Option<Crs>) -> JsResult {
-    let Some(Crs { wkt, keys, doubles, ascii }) = crs else {
+    let Some(Crs {
+        wkt,
+        keys,
+        doubles,
+        ascii,
+    }) = crs
+    else {
         return Ok(JsValue::UNDEFINED);
     };
     let given = |is_given: bool| is_given.then_some(());
     object([
         ("wkt", optional(wkt, |wkt| JsValue::from(wkt))),
-        ("keys", optional(&given(!keys.is_empty()), |_| Uint16Array::from(&keys[..]))),
-        ("doubles", optional(&given(!doubles.is_empty()), |_| Float64Array::from(&doubles[..]))),
-        ("ascii", optional(&given(!ascii.is_empty()), |_| JsValue::from(ascii))),
+        (
+            "keys",
+            optional(&given(!keys.is_empty()), |_| Uint16Array::from(&keys[..])),
+        ),
+        (
+            "doubles",
+            optional(&given(!doubles.is_empty()), |_| {
+                Float64Array::from(&doubles[..])
+            }),
+        ),
+        (
+            "ascii",
+            optional(&given(!ascii.is_empty()), |_| JsValue::from(ascii)),
+        ),
     ])
 }

@@ -6,7 +6,8 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions, Reading, Stations, Summary, Want,
+    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
+    Reading, Stations, Summary, Want,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
@@ -100,7 +101,9 @@ pub fn read_end() -> JsResult {
         };
         let want = match reading.want() {
             Some(Want::File(name)) => object([("file", name.into())])?,
-            Some(Want::Picture(bytes)) => object([("picture", Uint8Array::from(&bytes[..]).into())])?,
+            Some(Want::Picture(bytes)) => {
+                object([("picture", Uint8Array::from(&bytes[..]).into())])?
+            }
             None => JsValue::UNDEFINED,
         };
         object([
@@ -222,12 +225,21 @@ fn summary(summary: &Summary) -> JsResult {
             }),
         ),
         ("seenFromAbove", summary.seen_from_above.into()),
-        ("unit", optional(&summary.unit, |unit| JsValue::from(unit.name()))),
+        (
+            "unit",
+            optional(&summary.unit, |unit| JsValue::from(unit.name())),
+        ),
         ("crs", crs(summary)?),
         ("sampled", (summary.sampling.points as f64).into()),
         (
             "missing",
-            summary.sampling.missing.iter().map(JsValue::from).collect::<Array>().into(),
+            summary
+                .sampling
+                .missing
+                .iter()
+                .map(JsValue::from)
+                .collect::<Array>()
+                .into(),
         ),
         ("attributes", strings(&verdict.attributes)),
         ("leftOut", left_out(&verdict.left_out)?),

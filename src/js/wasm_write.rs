@@ -34,7 +34,10 @@ pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValu
         let names: Vec<&str> = Output::ALL.iter().map(|format| format.name()).collect();
         bad_option("format", &names.join(", "), name)
     })?;
-    let named = |name: &str| Unit::from_name(name).ok_or_else(|| bad_option("unit", "mm, cm, m, in, ft, us-ft or deg", name));
+    let named = |name: &str| {
+        Unit::from_name(name)
+            .ok_or_else(|| bad_option("unit", "mm, cm, m, in, ft, us-ft or deg", name))
+    };
     let options = WriteOptions {
         ascii: encoding.as_deref() == Some("ascii"),
         quantize,

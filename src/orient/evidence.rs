@@ -8,7 +8,7 @@ use crate::orient::camera;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Edge, energy};
 use crate::orient::parts::Parts;
-use crate::reduce::clusters::Shares;
+use crate::reduce::shares::Shares;
 use glam::Vec3;
 
 /// The evidence of a cloud: vectors that outward normals agree with, up to unit length by how much they count; empty where a

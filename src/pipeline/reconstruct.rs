@@ -213,9 +213,13 @@ fn surface(
     origin.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
+    let (low, high) = world_box(&input, &reduced.cloud);
+    let mut doubts = report.doubts.clone();
+    doubts.extend(report::doubts_of_shape(low, high, report.distance.rms));
+    doubts.extend(report::doubts(&signs.account));
     let surface_report = SurfaceReport {
         reduce: ReduceReport {
-            doubts: [report.doubts.clone(), report::doubts(&signs.account)].concat(),
+            doubts,
             ..report.clone()
         },
         triangles: mesh.triangles.len(),
@@ -239,6 +243,18 @@ fn surface(
         distances,
         report: surface_report,
     })
+}
+
+/// Corners of the bounding box of points in the cloud's unit frame, in world coordinates.
+fn world_box(points: &[Vec3], cloud: &Cloud) -> ([f64; 3], [f64; 3]) {
+    let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let origin = cloud.origin.unwrap_or_default();
+    let world = |corner| {
+        let p = cloud.frame.to_caller(corner);
+        [0, 1, 2].map(|axis| p[axis] + origin[axis])
+    };
+    (world(low), world(high))
 }
 
 /// Whether strays are dropped before a surface is made.

@@ -1,6 +1,5 @@
 //! From a cloud to a reduced cloud.
 
-use crate::report;
 use crate::base::clock::Clock;
 use crate::base::error::Result;
 use crate::base::par;
@@ -12,6 +11,7 @@ use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::results::ReducedCloud;
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
+use crate::report;
 use crate::report::{DistanceStats, ReduceReport};
 use std::borrow::Cow;
 

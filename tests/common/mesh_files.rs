@@ -7,7 +7,9 @@ pub fn png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Vec<u8> {
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(pixels.as_flattened()).expect("as many pixels");
+    writer
+        .write_image_data(pixels.as_flattened())
+        .expect("as many pixels");
     writer.finish().expect("an end");
     file
 }
@@ -17,9 +19,17 @@ pub fn png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Vec<u8> {
 pub fn glb(material: &str, sampler: &str, node: &str, picture: &[u8]) -> Vec<u8> {
     let mut data: Vec<u8> = Vec::new();
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0f32]];
-    square.iter().flat_map(|[x, y]| [*x, *y, 0.0]).for_each(|x| data.extend(x.to_le_bytes()));
-    square.as_flattened().iter().for_each(|x| data.extend(x.to_le_bytes()));
-    [0, 1, 2, 0, 2, 3u16].iter().for_each(|i| data.extend(i.to_le_bytes()));
+    square
+        .iter()
+        .flat_map(|[x, y]| [*x, *y, 0.0])
+        .for_each(|x| data.extend(x.to_le_bytes()));
+    square
+        .as_flattened()
+        .iter()
+        .for_each(|x| data.extend(x.to_le_bytes()));
+    [0, 1, 2, 0, 2, 3u16]
+        .iter()
+        .for_each(|i| data.extend(i.to_le_bytes()));
     data.extend(picture);
     let mut json = format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{node}}}],

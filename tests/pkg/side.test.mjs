@@ -1,15 +1,18 @@
 // Which side is out: what is known of it on its way in, through every call and out again, and what is said of it.
 
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test from 'node:test';
-import { PointweaveError, inspect, read, reconstruct, reduce, sideInWords, write } from 'pointweave';
+import { fileURLToPath } from 'node:url';
+import { PointweaveError, flip, inspect, read, reconstruct, reduce, sample, sideInWords, write } from 'pointweave';
 import { load } from 'pointweave/core';
 import { parse } from '../../pkg/cli/arguments.js';
 import { withSaid } from '../../pkg/cli/cloud-flags.js';
 import { UsageError } from '../../pkg/cli/usage.js';
+import { sharedFile } from '../page/browser.mjs';
 import { engineFor, rejection, sphere } from './support.mjs';
 
 /** A bowl of hills, open above: `up` says how much of a mesh of it looks up. */
@@ -147,7 +150,7 @@ test('normals of the cloud decide; those that are zero or NaN are none', async (
   const mesh = await reconstruct({ ...cloud, normals: down });
   assert.ok(facing(mesh, up) < 0.001);
   assert.ok(share(mesh.report, 'normals') > 0.99, JSON.stringify(mesh.report.orientation));
-  const half = down.map((x, i) => (i % 2 === 0 ? x : NaN));
+  const half = down.map((x, i) => (i % 6 < 3 ? x : NaN));
   assert.ok(facing(await reconstruct({ ...cloud, normals: half }), up) < 0.001, 'the others tell');
   for (const none of [down.fill(0), down.slice().fill(NaN)]) {
     const alone = await reconstruct({ ...cloud, normals: none });
@@ -182,17 +185,56 @@ test('the report says what told the side, and doubts only what is doubtful', asy
   const two = { orientation: { sources: [{ source: 'guess', share: 0.2 }, { source: 'viewpoints', share: 0.796 }, { source: 'up', share: 0.004 }], guessed: 0.2 } };
   assert.equal(sideInWords(two), 'what tells the outer side: where it was scanned from (80 %), nothing, so this is a guess (20 %)');
   assert.deepEqual((await reduce(sphere(500))).report.doubts, []);
+  for (const model of ['duck', 'pig', 'part']) {
+    const clean = await reconstruct(await sample(model, { count: 3000 }), { reduce: { target: { ratio: 0.2 } } });
+    assert.deepEqual(clean.report.doubts, [], `a small scan of a ${model}`);
+  }
   const core = await load();
   const direct = core.reconstruct({ ...hills(), viewpoints: { positions: Float64Array.of(0, 0, -9) } });
   assert.ok(share(direct.report, 'viewpoints') > 0.99);
+});
+
+test('flip turns a mesh, or one piece of it with the points near it', async () => {
+  const count = 700;
+  const ball = sphere(count).positions;
+  const two = new Float32Array(6 * count);
+  two.set(ball);
+  two.set(ball.map((x, i) => 0.5 * x + (i % 3 === 0 ? 1.7 : 0)), 3 * count);
+  const mesh = await reconstruct({ positions: two });
+  assert.equal(mesh.report.components, 2);
+  const center = (p) => (p[0] < 1.1 ? [0, 0, 0] : [1.7, 0, 0]);
+  const away = (p) => p.map((x, k) => x - center(p)[k]);
+  assert.ok(facing(mesh, away) > 0.999);
+  const before = structuredClone(mesh);
+
+  const other = flip(mesh);
+  assert.ok(facing(other, away) < 0.001);
+  assert.deepEqual(other.normals, mesh.normals.map((x) => -x));
+  assert.deepEqual(other.cloud.normals, mesh.cloud.normals.map((x) => -x));
+  assert.deepEqual(flip(other), mesh);
+
+  const [small] = [...mesh.indices.keys()].filter((i) => i % 3 === 0 && mesh.positions[3 * mesh.indices[i]] > 1.2);
+  const half = flip(mesh, { triangle: small / 3 });
+  assert.ok(facing(half, (p) => away(p).map((x) => (p[0] < 1.1 ? x : -x))) > 0.999);
+  for (const { positions, normals } of [half, half.cloud]) {
+    for (let i = 0; i < positions.length; i += 3) {
+      const p = [...positions.slice(i, i + 3)];
+      const out = away(p).reduce((sum, x, k) => sum + x * normals[i + k], 0);
+      assert.ok(p[0] < 1.1 ? out > 0 : out < 0, `${p}`);
+    }
+  }
+  assert.deepEqual(mesh, before, 'what was given stays');
+
+  for (const triangle of [-1, 0.5, mesh.indices.length / 3, '0']) assert.throws(() => flip(mesh, { triangle }), { code: 'bad-option' });
+  for (const wrong of [undefined, null, {}, mesh.cloud]) assert.throws(() => flip(wrong), { code: 'bad-input' });
 });
 
 /** What the command line hands to the package. */
 const said = (...args) => parse(['reconstruct', 'a.ply', '-o', 'b.glb', ...args]).cloud;
 
 test('the command line says where a scan was seen from', () => {
-  assert.deepEqual(said(), { viewpoints: [], up: undefined });
-  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined });
+  assert.deepEqual(said(), { viewpoints: [], up: undefined, unit: undefined });
+  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined, unit: undefined });
   for (const [word, axis] of [['y', [0, 1, 0]], ['-z', [0, 0, -1]], ['1,2,2', [1, 2, 2]]]) assert.deepEqual(said(`--up=${word}`).up, axis);
   assert.deepEqual(parse(['reconstruct', 'a.ply', '-o', 'b.glb', '--orientation', 'inward', '--flip']).own, { orientation: 'inward', flip: true });
   for (const [args, line] of [
@@ -210,4 +252,59 @@ test('the command line says where a scan was seen from', () => {
   assert.deepEqual(withSaid(cloud, { viewpoints: [[1, 0, 1]], up: [0, 1, 0] }), { ...cloud, viewpoints: { positions: Float64Array.of(1, 0, 1), of: undefined }, up: [0, 1, 0] });
   const two = withSaid({ ...cloud, up: [1, 0, 0], viewpoints: { positions: new Float64Array(3) } }, { viewpoints: [[10, 0, 0], [1, 0, 0]] });
   assert.deepEqual([two.viewpoints.of, two.up], [Uint32Array.of(1, 0, 1), [1, 0, 0]]);
+});
+
+test('the command line says what tells the side, and what is doubtful', async (t) => {
+  const path = mkdtempSync(join(tmpdir(), 'pointweave-side-'));
+  t.after(() => rmSync(path, { recursive: true }));
+  writeFileSync(join(path, 'hills.xyz'), await write(hills(), { format: 'xyz' }));
+  const cli = fileURLToPath(new URL('../../pkg/cli.js', import.meta.url));
+  const run = (...args) => spawnSync(process.execPath, [cli, 'reconstruct', 'hills.xyz', ...args], { cwd: path, encoding: 'utf8' });
+
+  const seen = run('-o', 'seen.ply', '--viewpoint', '0,0,9');
+  assert.equal(seen.status, 0, seen.stderr);
+  assert.match(seen.stderr, /^[^\n]*; what tells the outer side: where it was scanned from\n$/);
+  const flipped = JSON.parse(run('--json', '--viewpoint', '0,0,-9', '--flip').stdout);
+  assert.ok(share(flipped, 'viewpoints') > 0.99);
+  assert.deepEqual(flipped.doubts, []);
+
+  // Nothing is known of a sheet that stands.
+  writeFileSync(join(path, 'hills.xyz'), await write({ positions: hills().positions.map((_, i, p) => p[3 * Math.floor(i / 3) + ((i + 1) % 3)]) }, { format: 'xyz' }));
+  const guessed = run('-o', 'guessed.ply');
+  assert.equal(guessed.status, 0, guessed.stderr);
+  const { doubts } = JSON.parse(run('--json').stdout);
+  assert.ok(doubts.length > 0 && doubts.every(({ code, message }) => /^[a-z-]+$/.test(code) && /^[A-Z].*\.$/.test(message)));
+  assert.equal(guessed.stderr.split('\n').slice(1).join('\n'), doubts.map(({ message }) => `pointweave: hills.xyz: doubtful: ${message}\n`).join(''));
+});
+
+/** A direction from a point to a place. */
+const to = (place) => (p) => place.map((x, k) => x - p[k]);
+
+for (const [name, toward, source] of [
+  ['geo_dem_up.ply', up, 'guess'], ['geo_dem_normals_up.ply', up, 'normals'], ['geo_depth_frame.ply', to([0, 0, 0]), 'camera'],
+  ['geo_room_pose.e57', to([2.5, 2, 1.4]), 'viewpoints'], ['geo_room_normals_in.ply', to([2.5, 2, 1.3]), 'normals'],
+]) {
+  test(`the right side of ${name}`, async () => {
+    const file = await sharedFile(`../field/cases/${name}`);
+    if (!file) return;
+    const { positions, indices, report } = await reconstruct(await read(file, { name }));
+    assert.ok(facing({ positions, indices }, toward) > 0.98, `${facing({ positions, indices }, toward)}`);
+    if (source !== 'camera') assert.equal(report.components, 1);
+    assert.deepEqual(report.doubts.map(({ code }) => code), source === 'guess' ? ['side-guessed'] : []);
+    assert.ok(share(report, source) > 0.9, JSON.stringify(report.orientation));
+  });
+}
+
+test('the organised frame of a depth camera is seen from the origin', async () => {
+  const file = await sharedFile('scans/pcl/milk_cartoon_all_small_clorox.pcd');
+  if (!file) return;
+  const { viewpoints } = await read(file);
+  assert.deepEqual(viewpoints, { positions: Float64Array.of(0, 0, 0) });
+});
+
+test('airborne scans are seen from above', async () => {
+  const file = await sharedFile('lidar/autzen_trim.laz');
+  if (!file) return;
+  const { up: axis, seenFromAbove, viewpoints } = await read(file);
+  assert.deepEqual([axis, seenFromAbove, viewpoints], [[0, 0, 1], true, undefined]);
 });

@@ -1,15 +1,22 @@
-//! The project's commands: `cargo xtask build | serve | test | bench | setup`.
+//! The project's commands: `cargo xtask build | page | serve | test | bench | setup`.
 //!
 //! Every command first sets up what it needs (`setup.rs`) and says what it installs before it does.
 //! A failure is one sentence that says what to do.
 
+mod apt;
+mod bench;
+mod browsers;
 mod build;
-mod glue;
+mod options;
+mod packages;
 mod page;
+mod serve;
 mod setup;
 mod shell;
 mod test;
 mod toolchain;
+mod tools;
+mod wasm_bindings;
 
 use std::process::ExitCode;
 
@@ -20,10 +27,15 @@ Pointweave's own commands. Each sets up what is missing first.
 
 Usage: cargo xtask <command> [options]
 
-  build                 all wasm builds, into pkg/wasm/
-  serve [--port N]      the builds and the page, served on localhost (default port 8080)
+  build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
+  options               what the table of options says, and nothing else
+  page                  the builds and the page, into www/dist/, for any static server
+  serve [--port N]      the same, served on localhost (default port 8080) as soon as there is something to see
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,element,page
+  test PART [FILE [NAME]]
+                        one of them; of native, wasm, pkg, element and page one file alone
+                        (`test pkg cli` runs tests/pkg/cli.test.mjs), or its tests of that name
   bench [ARGS…]         the benchmarks, after a build; ARGS go to tests/bench/bench.mjs
   setup                 install whatever the other commands need, and nothing else
 
@@ -43,16 +55,20 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &[String]) -> Result<()> {
-    let (command, options) = match args.split_first() {
-        Some((command, options)) => (command.as_str(), options),
+    let (command, arguments) = match args.split_first() {
+        Some((command, arguments)) => (command.as_str(), arguments),
         None => ("help", args),
     };
     match command {
-        "build" => expect_no_options(options).and_then(|()| build::build()),
-        "serve" => page::serve(port(options)?),
-        "test" => test::test(&test::selection(options)?),
-        "bench" => page::bench(options),
-        "setup" => expect_no_options(options).and_then(|()| setup::everything()),
+        "build" => expect_no_options(arguments).and_then(|()| build::build()),
+        "options" => expect_no_options(arguments).and_then(|()| options::write()),
+        "page" => expect_no_options(arguments)
+            .and_then(|()| build::ensure())
+            .and_then(|()| page::ensure()),
+        "serve" => serve::serve(port(arguments)?),
+        "test" => test::test(&test::Selection::parse(arguments)?),
+        "bench" => bench::bench(arguments),
+        "setup" => expect_no_options(arguments).and_then(|()| setup::everything()),
         "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(())

@@ -10,9 +10,9 @@ mod paint;
 mod polygons;
 mod spread;
 
+use super::RawCloud;
 use super::colors::ColorRange;
 use super::table::{Columns, Table};
-use super::RawCloud;
 use normals::CornerNormals;
 use paint::Painter;
 pub use paint::Picture;
@@ -112,7 +112,12 @@ impl Faces {
                 list => Some(corners.map(|at| list[at])),
             };
             add(&mut self.place_corners, before, of(face.places), [NONE; 3]);
-            add(&mut self.normal_corners, before, of(face.normals), [NONE; 3]);
+            add(
+                &mut self.normal_corners,
+                before,
+                of(face.normals),
+                [NONE; 3],
+            );
             add(&mut self.colors, before, face.color, [255; 3]);
             add(&mut self.look_of, before, face.look, NONE);
             self.corners.push(corners.map(|at| face.rows[at]));
@@ -147,7 +152,9 @@ impl Faces {
                 Some(bytes) => Source::Packed(bytes.to_vec()),
                 None => Source::Missing,
             };
-            if let (Source::Beside(name), Source::Missing) = (std::mem::replace(source, found), &*source) {
+            if let (Source::Beside(name), Source::Missing) =
+                (std::mem::replace(source, found), &*source)
+            {
                 self.missing.push(name);
             }
         }
@@ -160,7 +167,8 @@ impl Faces {
             *source = match picture {
                 Some(picture) => Source::Open(picture),
                 None => {
-                    self.missing.push("a picture that is no PNG, JPEG or WebP file".into());
+                    self.missing
+                        .push("a picture that is no PNG, JPEG or WebP file".into());
                     Source::Missing
                 }
             };
@@ -223,7 +231,10 @@ pub struct Sampling {
 impl Sampling {
     /// What was left out, by why.
     pub(super) fn skipped(&self) -> Vec<(&'static str, u64)> {
-        let counts = [("unused-vertices", self.unused), ("broken-faces", self.broken)];
+        let counts = [
+            ("unused-vertices", self.unused),
+            ("broken-faces", self.broken),
+        ];
         counts.into_iter().filter(|(_, count)| *count > 0).collect()
     }
 }
@@ -249,14 +260,21 @@ pub(super) fn sample(
     let normals = CornerNormals::of(&faces, vertices, position);
     let painter = Painter::of(&faces, vertices);
     let scalars = Scalars::of(vertices);
-    let mut table = Table::new(columns(vertices, painter.is_some()), Some(samples.len() as u64));
+    let mut table = Table::new(
+        columns(vertices, painter.is_some()),
+        Some(samples.len() as u64),
+    );
     let mut row = vec![0.0; 9 + vertices.attributes.len()];
     for sample in &samples {
         let triangle = sample.triangle as usize;
         let [a, b, c] = faces.corners[triangle];
         let weights = sample.weights();
         let mix = |values: [[f64; 3]; 3]| {
-            [0, 1, 2].map(|k| (0..3).map(|corner| weights[corner] * values[corner][k]).sum::<f64>())
+            [0, 1, 2].map(|k| {
+                (0..3)
+                    .map(|corner| weights[corner] * values[corner][k])
+                    .sum::<f64>()
+            })
         };
         row[..3].copy_from_slice(&mix([a, b, c].map(position)));
         row[3..6].copy_from_slice(&unit(mix(normals.of_triangle(triangle))));
@@ -289,7 +307,9 @@ fn columns(vertices: &RawCloud, colors: bool) -> Columns {
     Columns {
         normal: Some([3, 4, 5]),
         color: colors.then_some([6, 7, 8]),
-        scalars: attributes.map(|(i, attribute)| (9 + i, attribute.name.clone())).collect(),
+        scalars: attributes
+            .map(|(i, attribute)| (9 + i, attribute.name.clone()))
+            .collect(),
         colors: ColorRange::Bytes,
         ..Columns::xyz()
     }
@@ -307,13 +327,22 @@ impl Scalars<'_> {
         let labels = vertices.attributes.iter();
         Scalars {
             vertices,
-            labels: labels.map(|a| a.values.iter().all(|x| x.fract() == 0.0)).collect(),
+            labels: labels
+                .map(|a| a.values.iter().all(|x| x.fract() == 0.0))
+                .collect(),
         }
     }
 
     fn mix(&self, corners: [u32; 3], weights: [f64; 3], row: &mut [f64]) {
-        let nearest = (1..3).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
-        for ((value, attribute), label) in row.iter_mut().zip(&self.vertices.attributes).zip(&self.labels) {
+        let nearest = (1..3).fold(
+            0,
+            |best, k| if weights[k] > weights[best] { k } else { best },
+        );
+        for ((value, attribute), label) in row
+            .iter_mut()
+            .zip(&self.vertices.attributes)
+            .zip(&self.labels)
+        {
             let of = |corner: usize| f64::from(attribute.values[corners[corner] as usize]);
             *value = match label {
                 true => of(nearest),
@@ -329,7 +358,9 @@ fn loose_vertices(faces: &Faces, vertices: &RawCloud) -> Vec<u32> {
     for &corner in faces.corners.as_flattened() {
         used[corner as usize] = true;
     }
-    (0..vertices.points() as u32).filter(|&i| !used[i as usize]).collect()
+    (0..vertices.points() as u32)
+        .filter(|&i| !used[i as usize])
+        .collect()
 }
 
 /// Whether they are a scan of their own, with a few faces beside.
@@ -340,22 +371,34 @@ fn keeps_loose(loose: &[u32], vertices: &RawCloud) -> bool {
 
 fn vertex_normal(vertices: &RawCloud, i: u32) -> [f64; 3] {
     let normals = vertices.normals.as_ref();
-    normals.map_or([0.0; 3], |normals| [0, 1, 2].map(|axis| f64::from(normals[3 * i as usize + axis])))
+    normals.map_or([0.0; 3], |normals| {
+        [0, 1, 2].map(|axis| f64::from(normals[3 * i as usize + axis]))
+    })
 }
 
 fn vertex_color(vertices: &RawCloud, i: u32) -> [f64; 3] {
     let colors = vertices.colors.as_ref();
-    colors.map_or([255.0; 3], |colors| [0, 1, 2].map(|axis| f64::from(colors[3 * i as usize + axis])))
+    colors.map_or([255.0; 3], |colors| {
+        [0, 1, 2].map(|axis| f64::from(colors[3 * i as usize + axis]))
+    })
 }
 
 /// Of unit length; zero stays zero.
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    if length > 0.0 { v.map(|x| x / length) } else { [0.0; 3] }
+    if length > 0.0 {
+        v.map(|x| x / length)
+    } else {
+        [0.0; 3]
+    }
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -370,4 +413,3 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn area_normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     cross(minus(b, a), minus(c, a))
 }
-

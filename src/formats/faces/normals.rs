@@ -25,7 +25,13 @@ impl CornerNormals<'_> {
         position: impl Fn(u32) -> [f64; 3],
     ) -> CornerNormals<'a> {
         let place = places(vertices.points(), &position);
-        let corners = || faces.corners.as_flattened().iter().map(|&i| place[i as usize] as usize);
+        let corners = || {
+            faces
+                .corners
+                .as_flattened()
+                .iter()
+                .map(|&i| place[i as usize] as usize)
+        };
         let mut starts = vec![0u32; place.len() + 1];
         corners().for_each(|p| starts[p + 1] += 1);
         for p in 1..starts.len() {
@@ -38,7 +44,11 @@ impl CornerNormals<'_> {
             next[p] += 1;
         }
         CornerNormals {
-            areas: faces.corners.iter().map(|corners| area_normal(corners.map(&position))).collect(),
+            areas: faces
+                .corners
+                .iter()
+                .map(|corners| area_normal(corners.map(&position)))
+                .collect(),
             faces,
             vertices,
             place,
@@ -57,7 +67,12 @@ impl CornerNormals<'_> {
 
     /// That which the file says, unless it says none.
     fn own(&self, triangle: usize, corner: usize) -> Option<[f64; 3]> {
-        let normal = match self.faces.normal_corners.get(triangle).map(|corners| corners[corner]) {
+        let normal = match self
+            .faces
+            .normal_corners
+            .get(triangle)
+            .map(|corners| corners[corner])
+        {
             Some(NONE) => return None,
             Some(i) => *self.faces.normals.get(i as usize)?,
             None => {
@@ -96,7 +111,11 @@ fn places(points: usize, position: impl Fn(u32) -> [f64; 3]) -> Vec<u32> {
     for pair in 0..order.len() {
         let i = order[pair];
         let same = pair > 0 && key(order[pair - 1]) == key(i);
-        place[i as usize] = if same { place[order[pair - 1] as usize] } else { i };
+        place[i as usize] = if same {
+            place[order[pair - 1] as usize]
+        } else {
+            i
+        };
     }
     place
 }

@@ -19,7 +19,11 @@ impl Picture {
     /// Pixels of a size; `None` where it is not theirs.
     pub fn new(width: usize, height: usize, pixels: Vec<u8>) -> Option<Picture> {
         let expected = width.checked_mul(height)?.checked_mul(4)?;
-        (expected > 0 && pixels.len() == expected).then_some(Picture { width, height, pixels })
+        (expected > 0 && pixels.len() == expected).then_some(Picture {
+            width,
+            height,
+            pixels,
+        })
     }
 }
 
@@ -79,7 +83,10 @@ impl Painter<'_> {
     pub(super) fn of<'a>(faces: &'a Faces, vertices: &'a RawCloud) -> Option<Painter<'a>> {
         let shows = |look: &Look| {
             look.factor.is_some_and(|factor| factor != [1.0; 3])
-                || look.texture.as_ref().is_some_and(|texture| open(faces, texture).is_some())
+                || look
+                    .texture
+                    .as_ref()
+                    .is_some_and(|texture| open(faces, texture).is_some())
         };
         let colored = vertices.colors.is_some()
             || !faces.colors.is_empty()
@@ -90,11 +97,18 @@ impl Painter<'_> {
     /// The colour of a point, 0-255; `None` where the texture has a hole.
     pub(super) fn color(&self, triangle: usize, weights: [f64; 3]) -> Option<[f64; 3]> {
         let own = self.own(triangle, weights);
-        let look = self.faces.look_of.get(triangle).and_then(|&i| self.faces.looks.get(i as usize));
+        let look = self
+            .faces
+            .look_of
+            .get(triangle)
+            .and_then(|&i| self.faces.looks.get(i as usize));
         let Some(look) = look else {
             return Some(own.unwrap_or([255.0; 3]));
         };
-        let texel = look.texture.as_ref().and_then(|texture| self.texel(texture, triangle, weights));
+        let texel = look
+            .texture
+            .as_ref()
+            .and_then(|texture| self.texel(texture, triangle, weights));
         if let (Some(cutoff), Some([_, _, _, alpha])) = (look.cutoff, texel)
             && alpha < 255.0 * cutoff
         {
@@ -157,10 +171,17 @@ impl Painter<'_> {
         // Pixels have their colour at their centre.
         let [x, y] = place.map(|x| (x - 0.5).floor());
         let [s, t] = [place[0] - 0.5 - x, place[1] - 0.5 - y];
-        let [a, b, c, d] = [pixel(x, y), pixel(x + 1.0, y), pixel(x, y + 1.0), pixel(x + 1.0, y + 1.0)];
-        Some([0, 1, 2, 3].map(|k| {
-            (1.0 - t) * ((1.0 - s) * a[k] + s * b[k]) + t * ((1.0 - s) * c[k] + s * d[k])
-        }))
+        let [a, b, c, d] = [
+            pixel(x, y),
+            pixel(x + 1.0, y),
+            pixel(x, y + 1.0),
+            pixel(x + 1.0, y + 1.0),
+        ];
+        Some(
+            [0, 1, 2, 3].map(|k| {
+                (1.0 - t) * ((1.0 - s) * a[k] + s * b[k]) + t * ((1.0 - s) * c[k] + s * d[k])
+            }),
+        )
     }
 }
 
@@ -203,7 +224,8 @@ impl Faces {
                     current = self.look_names.iter().position(|known| *known == name);
                 }
                 b"kd" => {
-                    let values: Vec<f64> = words(rest).filter_map(super::super::text::number).collect();
+                    let values: Vec<f64> =
+                        words(rest).filter_map(super::super::text::number).collect();
                     if let (Some(i), &[r, g, b]) = (current, &values[..])
                         && self.looks[i].texture.is_none()
                     {
@@ -214,7 +236,11 @@ impl Faces {
                     if let (Some(i), Some((name, wrap))) = (current, map_file(rest)) {
                         let picture = self.picture_beside(name);
                         self.looks[i].factor = None;
-                        self.looks[i].texture = Some(Texture { picture, wrap: [wrap; 2], nearest: false });
+                        self.looks[i].texture = Some(Texture {
+                            picture,
+                            wrap: [wrap; 2],
+                            nearest: false,
+                        });
                     }
                 }
                 _ => {}
@@ -238,12 +264,15 @@ fn map_file(rest: &[u8]) -> Option<(String, Wrap)> {
     let mut wrap = Wrap::Repeat;
     while let Some(option) = words(rest).next().filter(|word| word.starts_with(b"-")) {
         let values = match option {
-            b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-texres" | b"-bm" | b"-boost" | b"-imfchan" | b"-type" => 1,
+            b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-texres" | b"-bm" | b"-boost"
+            | b"-imfchan" | b"-type" => 1,
             b"-mm" => 2,
             // Up to three numbers.
-            b"-s" | b"-o" | b"-t" => {
-                words(rest).skip(1).take(3).take_while(|word| super::super::text::number(word).is_some()).count()
-            }
+            b"-s" | b"-o" | b"-t" => words(rest)
+                .skip(1)
+                .take(3)
+                .take_while(|word| super::super::text::number(word).is_some())
+                .count(),
             _ => break,
         };
         if option == b"-clamp" && words(rest).nth(1) == Some(b"on") {
@@ -273,8 +302,14 @@ mod tests {
     fn maps_have_options_and_names_with_blanks() {
         let name = |text: &str| map_file(text.as_bytes());
         assert_eq!(name("a.png"), Some(("a.png".into(), Wrap::Repeat)));
-        assert_eq!(name("-s 1 1 1 -clamp on  my scan.jpg"), Some(("my scan.jpg".into(), Wrap::Clamp)));
-        assert_eq!(name("-o 0.5 tex/1.png"), Some(("tex/1.png".into(), Wrap::Repeat)));
+        assert_eq!(
+            name("-s 1 1 1 -clamp on  my scan.jpg"),
+            Some(("my scan.jpg".into(), Wrap::Clamp))
+        );
+        assert_eq!(
+            name("-o 0.5 tex/1.png"),
+            Some(("tex/1.png".into(), Wrap::Repeat))
+        );
         assert_eq!(name("-bm 1"), None);
     }
 }

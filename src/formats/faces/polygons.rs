@@ -29,7 +29,13 @@ pub(super) fn cut(
     let mut left: Vec<usize> = (0..points.len()).collect();
     while left.len() > 3 {
         let count = left.len();
-        let around = |i: usize| [left[(i + count - 1) % count], left[i], left[(i + 1) % count]];
+        let around = |i: usize| {
+            [
+                left[(i + count - 1) % count],
+                left[i],
+                left[(i + 1) % count],
+            ]
+        };
         let ear = (0..count).find(|&i| is_ear(around(i), &left, &points, normal));
         // Without an ear the polygon crosses itself.
         let ear = ear.unwrap_or(0);
@@ -63,25 +69,47 @@ mod tests {
     fn triangles(points: &[[f64; 3]]) -> Vec<[usize; 3]> {
         let polygon: Vec<u32> = (0..points.len() as u32).collect();
         let mut found = Vec::new();
-        cut(&polygon, |i| points.get(i as usize).copied(), |t| found.push(t));
+        cut(
+            &polygon,
+            |i| points.get(i as usize).copied(),
+            |t| found.push(t),
+        );
         found
     }
 
     #[test]
     fn an_arrowhead_is_cut_along_its_inner_corner() {
-        let arrow = [[0.0, 0.0, 0.0], [2.0, -1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 1.0, 0.0]];
+        let arrow = [
+            [0.0, 0.0, 0.0],
+            [2.0, -1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [2.0, 1.0, 0.0],
+        ];
         let found = triangles(&arrow);
-        let area: f64 = found.iter().map(|t| area_normal(t.map(|i| arrow[i]))[2]).sum();
+        let area: f64 = found
+            .iter()
+            .map(|t| area_normal(t.map(|i| arrow[i]))[2])
+            .sum();
         assert_eq!((found.len(), area), (2, 2.0));
-        assert!(found.iter().all(|t| area_normal(t.map(|i| arrow[i]))[2] > 0.0));
+        assert!(
+            found
+                .iter()
+                .all(|t| area_normal(t.map(|i| arrow[i]))[2] > 0.0)
+        );
     }
 
     #[test]
     fn large_polygons_and_unknown_corners_become_fans() {
-        let ring: Vec<[f64; 3]> = (0..300).map(|i| [f64::from(i), f64::from(i * i), 0.0]).collect();
+        let ring: Vec<[f64; 3]> = (0..300)
+            .map(|i| [f64::from(i), f64::from(i * i), 0.0])
+            .collect();
         assert_eq!(triangles(&ring).len(), 298);
         let mut found = Vec::new();
-        cut(&[0, 1, 2, 9], |i| (i < 3).then_some([f64::from(i), 0.0, 0.0]), |t| found.push(t));
+        cut(
+            &[0, 1, 2, 9],
+            |i| (i < 3).then_some([f64::from(i), 0.0, 0.0]),
+            |t| found.push(t),
+        );
         assert_eq!(found, [[0, 1, 2], [0, 2, 3]]);
     }
 }

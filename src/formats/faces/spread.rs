@@ -62,7 +62,9 @@ pub(super) fn over(
             let [a, b, c] = corners[sample.triangle as usize].map(&position);
             let w = sample.weights();
             [0, 1, 2].map(|k| {
-                let x = w[0] * (a[k] - centre[k]) + w[1] * (b[k] - centre[k]) + w[2] * (c[k] - centre[k]);
+                let x = w[0] * (a[k] - centre[k])
+                    + w[1] * (b[k] - centre[k])
+                    + w[2] * (c[k] - centre[k]);
                 (x / packed) as f32
             })
         })
@@ -72,7 +74,10 @@ pub(super) fn over(
         .map(|triangle| unit(area_normal(triangle.map(&position))).map(|x| x as f32))
         .collect();
     let accepted = throw(&candidates, &places, &normals, wanted);
-    let chosen = candidates.iter().zip(accepted).filter(|(_, accepted)| *accepted);
+    let chosen = candidates
+        .iter()
+        .zip(accepted)
+        .filter(|(_, accepted)| *accepted);
     Some(chosen.map(|(sample, _)| *sample).collect())
 }
 
@@ -85,7 +90,11 @@ fn lay_out(areas: &[f64], total: f64, count: usize) -> Vec<Sample> {
     for (triangle, &area) in areas.iter().enumerate() {
         before += area;
         // The last takes what rounding has left.
-        let upto = if triangle + 1 == areas.len() { count as f64 } else { before / total * count as f64 };
+        let upto = if triangle + 1 == areas.len() {
+            count as f64
+        } else {
+            before / total * count as f64
+        };
         if next >= upto || area == 0.0 {
             continue;
         }
@@ -96,7 +105,10 @@ fn lay_out(areas: &[f64], total: f64, count: usize) -> Vec<Sample> {
             if v + w > 1.0 {
                 (v, w) = (1.0 - v, 1.0 - w);
             }
-            candidates.push(Sample { triangle: triangle as u32, shares: [v as f32, w as f32] });
+            candidates.push(Sample {
+                triangle: triangle as u32,
+                shares: [v as f32, w as f32],
+            });
             step += 1.0;
             next = candidates.len() as f64 + rng.uniform();
         }
@@ -105,7 +117,12 @@ fn lay_out(areas: &[f64], total: f64, count: usize) -> Vec<Sample> {
 }
 
 /// Which candidates are accepted; `places` are in units of the densest packing's distance.
-fn throw(candidates: &[Sample], places: &[[f32; 3]], normals: &[[f32; 3]], wanted: usize) -> Vec<bool> {
+fn throw(
+    candidates: &[Sample],
+    places: &[[f32; 3]],
+    normals: &[[f32; 3]],
+    wanted: usize,
+) -> Vec<bool> {
     let mut waiting: Vec<u32> = (0..candidates.len() as u32).collect();
     let mut rng = Rng::new(SEED + 1);
     for i in (1..waiting.len()).rev() {
@@ -158,7 +175,10 @@ const MOST_MEMBERS: usize = 1024;
 impl Grid {
     fn of(places: &[[f32; 3]]) -> Grid {
         let lists = places.len().next_power_of_two();
-        let list_of: Vec<u32> = places.iter().map(|&place| list(cell(place), lists) as u32).collect();
+        let list_of: Vec<u32> = places
+            .iter()
+            .map(|&place| list(cell(place), lists) as u32)
+            .collect();
         let mut starts = vec![0u32; lists + 1];
         list_of.iter().for_each(|&l| starts[l as usize + 1] += 1);
         for l in 1..starts.len() {
@@ -181,7 +201,8 @@ impl Grid {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
                     let l = list([x, y, z], self.starts.len() - 1);
-                    let members = &self.members[self.starts[l] as usize..self.starts[l + 1] as usize];
+                    let members =
+                        &self.members[self.starts[l] as usize..self.starts[l + 1] as usize];
                     members.iter().take(MOST_MEMBERS).for_each(|&i| each(i));
                 }
             }
@@ -196,7 +217,9 @@ fn cell(place: [f32; 3]) -> [i64; 3] {
 /// The list of a cell, of a power of two.
 fn list(cell: [i64; 3], lists: usize) -> usize {
     let hash = cell.iter().fold(0u64, |hash, &x| {
-        (hash ^ x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
+        (hash ^ x as u64)
+            .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+            .rotate_left(29)
     });
     hash as usize & (lists - 1)
 }

@@ -12,7 +12,8 @@ pub(super) struct Placing {
 
 impl Placing {
     pub(super) fn place(&self, [u, v, _]: [f64; 3]) -> [f32; 2] {
-        self.matrix.map(|row| (row[0] * u + row[1] * v + row[2]) as f32)
+        self.matrix
+            .map(|row| (row[0] * u + row[1] * v + row[2]) as f32)
     }
 }
 
@@ -27,7 +28,9 @@ pub(super) fn looks(document: &Document, buffer: &[u8], faces: &mut Faces) -> Ve
             Some(specular) => (specular.diffuse_factor, &specular.diffuse_texture),
             None => (pbr.base_color_factor, &pbr.base_color_texture),
         };
-        let found = texture.as_ref().and_then(|texture| texture_of(texture, document));
+        let found = texture
+            .as_ref()
+            .and_then(|texture| texture_of(texture, document));
         if let Some(found) = &found {
             used[found.picture] = true;
         }
@@ -52,7 +55,9 @@ pub(super) fn looks(document: &Document, buffer: &[u8], faces: &mut Faces) -> Ve
 fn texture_of(texture: &TextureUse, document: &Document) -> Option<Texture> {
     let entry = document.textures.get(texture.index)?;
     let webp = entry.extensions.webp.as_ref().and_then(|webp| webp.source);
-    let picture = webp.or(entry.source).filter(|&i| i < document.images.len())?;
+    let picture = webp
+        .or(entry.source)
+        .filter(|&i| i < document.images.len())?;
     let sampler = entry.sampler.and_then(|i| document.samplers.get(i));
     let wrap = |code: Option<u32>| match code {
         Some(33071) => Wrap::Clamp,
@@ -85,12 +90,16 @@ fn placing(texture: &TextureUse) -> Placing {
 
 fn image_source(image: &Image, document: &Document, buffer: &[u8]) -> Source {
     if let Some(view) = image.buffer_view.and_then(|i| document.buffer_views.get(i)) {
-        let bytes = Some(view).filter(|view| view.buffer == 0).and_then(|view| within(view, 0, buffer));
+        let bytes = Some(view)
+            .filter(|view| view.buffer == 0)
+            .and_then(|view| within(view, 0, buffer));
         return bytes.map_or(Source::Missing, |bytes| Source::Packed(bytes.to_vec()));
     }
     match &image.uri {
         Some(uri) if uri.starts_with("data:") => {
-            let content = uri.split_once(";base64,").and_then(|(_, text)| from_base64(text));
+            let content = uri
+                .split_once(";base64,")
+                .and_then(|(_, text)| from_base64(text));
             content.map_or(Source::Missing, Source::Packed)
         }
         Some(uri) => Source::Beside(from_percent(uri)),
@@ -127,7 +136,9 @@ fn from_percent(uri: &str) -> String {
     let mut name = Vec::with_capacity(bytes.len());
     let mut at = 0;
     while at < bytes.len() {
-        let code = bytes.get(at + 1..at + 3).and_then(|hex| std::str::from_utf8(hex).ok());
+        let code = bytes
+            .get(at + 1..at + 3)
+            .and_then(|hex| std::str::from_utf8(hex).ok());
         match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
             Some(byte) if bytes[at] == b'%' => {
                 name.push(byte);

@@ -34,13 +34,30 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Option<Crs> {
 
 fn take(crs: &mut Crs, number: u16, content: &[u8]) {
     let text = || {
-        let end = content.iter().rposition(|&b| b != 0).map_or(0, |last| last + 1);
+        let end = content
+            .iter()
+            .rposition(|&b| b != 0)
+            .map_or(0, |last| last + 1);
         String::from_utf8_lossy(&content[..end]).into_owned()
     };
     match number {
         TEXT => crs.wkt = Some(text()).filter(|text| !text.trim().is_empty()),
-        KEYS => crs.keys = content.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect(),
-        DOUBLES => crs.doubles = content.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b)).collect(),
+        KEYS => {
+            crs.keys = content
+                .as_chunks()
+                .0
+                .iter()
+                .map(|&b| u16::from_le_bytes(b))
+                .collect()
+        }
+        DOUBLES => {
+            crs.doubles = content
+                .as_chunks()
+                .0
+                .iter()
+                .map(|&b| f64::from_le_bytes(b))
+                .collect()
+        }
         ASCII => crs.ascii = text(),
         _ => {}
     }

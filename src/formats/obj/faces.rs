@@ -29,7 +29,10 @@ impl ObjFaces {
             self.faces.normals.len() as u64,
         ];
         self.corners.iter_mut().for_each(Vec::clear);
-        for corner in words(line).skip(1).take_while(|word| !word.starts_with(b"#")) {
+        for corner in words(line)
+            .skip(1)
+            .take_while(|word| !word.starts_with(b"#"))
+        {
             let mut indices = corner.split(|&b| b == b'/');
             for (list, count) in self.corners.iter_mut().zip(counts) {
                 list.push(index(indices.next().unwrap_or_default(), count));
@@ -86,7 +89,9 @@ impl ObjFaces {
 
 /// An index from 0, of one that counts from 1 or backwards from the `count` so far.
 fn index(word: &[u8], count: u64) -> u32 {
-    let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
+    let number = std::str::from_utf8(word)
+        .ok()
+        .and_then(|word| word.parse::<i64>().ok());
     let at = match number {
         Some(i @ 1..) => Some(i - 1),
         Some(i @ ..=-1) => i.checked_add(count as i64),

@@ -23,10 +23,15 @@ impl Layout {
         if !strips && element.name != "face" {
             return None;
         }
-        let lists = || element.properties.iter().filter_map(|property| match property {
-            Property::List { name, .. } => Some(name.as_str()),
-            Property::One { .. } => None,
-        });
+        let lists = || {
+            element
+                .properties
+                .iter()
+                .filter_map(|property| match property {
+                    Property::List { name, .. } => Some(name.as_str()),
+                    Property::One { .. } => None,
+                })
+        };
         let names = element.names();
         let value = |name: &str| names.iter().position(|other| other == name);
         let color = || Some([value("red")?, value("green")?, value("blue")?]);
@@ -40,9 +45,19 @@ impl Layout {
     }
 
     /// Adds a row: its values, and its lists one behind the other with their ends.
-    pub(super) fn push(&self, values: &[f64], lists: &Lists, faces: &mut Faces, table: Option<&Table>) {
+    pub(super) fn push(
+        &self,
+        values: &[f64],
+        lists: &Lists,
+        faces: &mut Faces,
+        table: Option<&Table>,
+    ) {
         // What is no index is no vertex either: such a face is left out later.
-        let rows: Vec<u32> = lists.of(self.corners).iter().map(|&x| if x >= 0.0 { x as u32 } else { NONE }).collect();
+        let rows: Vec<u32> = lists
+            .of(self.corners)
+            .iter()
+            .map(|&x| if x >= 0.0 { x as u32 } else { NONE })
+            .collect();
         let position = |row| table.and_then(|table| table.position(row));
         if self.strips {
             return strips(&rows, faces);
@@ -51,12 +66,28 @@ impl Layout {
         let known = !rows.is_empty() && places.len() == 2 * rows.len();
         let first = faces.places.len() as u32;
         if known {
-            faces.places.extend(places.chunks_exact(2).map(|uv| [uv[0] as f32, 1.0 - uv[1] as f32]));
+            faces.places.extend(
+                places
+                    .chunks_exact(2)
+                    .map(|uv| [uv[0] as f32, 1.0 - uv[1] as f32]),
+            );
         }
-        let place_of: Vec<u32> = if known { (first..).take(rows.len()).collect() } else { Vec::new() };
+        let place_of: Vec<u32> = if known {
+            (first..).take(rows.len()).collect()
+        } else {
+            Vec::new()
+        };
         // Floats from 0 to 1 are as rare as a face's colour of 1 of 255.
-        let byte = |c: f64| if c <= 1.0 && c.fract() != 0.0 { 255.0 * c } else { c };
-        let color = self.color.map(|at| at.map(|i| byte(values[i]).round() as u8));
+        let byte = |c: f64| {
+            if c <= 1.0 && c.fract() != 0.0 {
+                255.0 * c
+            } else {
+                c
+            }
+        };
+        let color = self
+            .color
+            .map(|at| at.map(|i| byte(values[i]).round() as u8));
         let picture = self.picture.map_or(0, |i| values[i] as u32);
         let face = Face {
             rows: &rows,
@@ -75,7 +106,13 @@ fn strips(rows: &[u32], faces: &mut Faces) {
         for (i, three) in strip.windows(3).enumerate() {
             let [a, b, c] = [three[0], three[1], three[2]];
             let rows = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
-            faces.push(Face { rows: &rows, ..Face::default() }, |_| None);
+            faces.push(
+                Face {
+                    rows: &rows,
+                    ..Face::default()
+                },
+                |_| None,
+            );
         }
     }
 }
@@ -84,8 +121,15 @@ fn strips(rows: &[u32], faces: &mut Faces) {
 pub(super) fn looks(header: &Header, faces: &mut Faces) {
     for name in &header.textures {
         let picture = faces.picture_beside(name.clone());
-        let texture = Texture { picture, wrap: [Wrap::Repeat; 2], nearest: false };
-        faces.looks.push(Look { texture: Some(texture), ..Look::default() });
+        let texture = Texture {
+            picture,
+            wrap: [Wrap::Repeat; 2],
+            nearest: false,
+        };
+        faces.looks.push(Look {
+            texture: Some(texture),
+            ..Look::default()
+        });
     }
 }
 

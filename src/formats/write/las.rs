@@ -19,7 +19,9 @@ pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
     if points == 0 {
         return Err(Error::EmptyCloud);
     }
-    let (fields, extra): (Vec<_>, Vec<_>) = columns(cloud).into_iter().partition(|column| column.field.is_some());
+    let (fields, extra): (Vec<_>, Vec<_>) = columns(cloud)
+        .into_iter()
+        .partition(|column| column.field.is_some());
     let mut format = Format::new(6).map_err(internal)?;
     format.has_nir = fields.iter().any(|column| column.field == Some(Field::Nir));
     format.has_color = cloud.colors.is_some() || format.has_nir;
@@ -41,7 +43,11 @@ pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
         builder.vlrs.extend(records(crs));
     }
     if !extra.is_empty() {
-        builder.vlrs.push(record("LASF_Spec", 4, extra.iter().flat_map(description).collect()));
+        builder.vlrs.push(record(
+            "LASF_Spec",
+            4,
+            extra.iter().flat_map(description).collect(),
+        ));
     }
     let header = builder.into_header().map_err(internal)?;
     let mut writer = Writer::new(Cursor::new(Vec::new()), header).map_err(internal)?;
@@ -56,7 +62,10 @@ pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
             gps_time: Some(0.0),
             color: format.has_color.then(|| color(cloud, i)),
             nir: format.has_nir.then_some(0),
-            extra_bytes: extra.iter().flat_map(|column| column.value(i).to_le_bytes()).collect(),
+            extra_bytes: extra
+                .iter()
+                .flat_map(|column| column.value(i).to_le_bytes())
+                .collect(),
             ..Point::default()
         };
         for column in &fields {
@@ -138,7 +147,8 @@ impl Column<'_> {
 fn columns<'a>(cloud: &'a RawCloud) -> Vec<Column<'a>> {
     let mut taken: Vec<Field> = Vec::new();
     let attribute = |Attribute { name, values }: &'a Attribute| {
-        let field = Field::named(name).filter(|(field, most)| holds(values, *most) && !taken.contains(field));
+        let field = Field::named(name)
+            .filter(|(field, most)| holds(values, *most) && !taken.contains(field));
         taken.extend(field.map(|(field, _)| field));
         Column {
             name: name.clone(),
@@ -157,7 +167,12 @@ fn columns<'a>(cloud: &'a RawCloud) -> Vec<Column<'a>> {
             start,
             field: None,
         };
-        columns.extend(["NormalX", "NormalY", "NormalZ"].into_iter().enumerate().map(axis));
+        columns.extend(
+            ["NormalX", "NormalY", "NormalZ"]
+                .into_iter()
+                .enumerate()
+                .map(axis),
+        );
     }
     columns
 }
@@ -184,9 +199,15 @@ fn transforms(cloud: &RawCloud) -> Result<Vector<Transform>> {
             high[axis] = high[axis].max(x);
         }
     }
-    let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    let longest = (0..3)
+        .map(|axis| high[axis] - low[axis])
+        .fold(0.0, f64::max);
     // Powers by division and multiplication: the same everywhere. A place has steps, too.
-    let wanted = if longest > 0.0 { longest / f64::from(1 << 23) } else { 1e-3 };
+    let wanted = if longest > 0.0 {
+        longest / f64::from(1 << 23)
+    } else {
+        1e-3
+    };
     let mut scale = 1.0;
     while scale > wanted {
         scale /= 10.0;
@@ -198,13 +219,21 @@ fn transforms(cloud: &RawCloud) -> Result<Vector<Transform>> {
         scale,
         offset: (low[axis] * 0.5 + high[axis] * 0.5).round(),
     };
-    let offset_fits = |axis: usize| (high[axis] - of(axis).offset).abs() / scale < f64::from(i32::MAX);
+    let offset_fits =
+        |axis: usize| (high[axis] - of(axis).offset).abs() / scale < f64::from(i32::MAX);
     let fine = |axis: usize| match offset_fits(axis) {
         true => of(axis),
         // Of a cloud so small that a whole number is far away.
-        false => Transform { scale, offset: low[axis] * 0.5 + high[axis] * 0.5 },
+        false => Transform {
+            scale,
+            offset: low[axis] * 0.5 + high[axis] * 0.5,
+        },
     };
-    Ok(Vector { x: fine(0), y: fine(1), z: fine(2) })
+    Ok(Vector {
+        x: fine(0),
+        y: fine(1),
+        z: fine(2),
+    })
 }
 
 fn color(cloud: &RawCloud, i: usize) -> Color {
@@ -235,10 +264,18 @@ fn records(crs: &Crs) -> Vec<Vlr> {
         records.push(record(USER, 2112, [text.as_bytes(), b"\0"].concat()));
     }
     if !crs.keys.is_empty() {
-        records.push(record(USER, 34735, crs.keys.iter().flat_map(|x| x.to_le_bytes()).collect()));
+        records.push(record(
+            USER,
+            34735,
+            crs.keys.iter().flat_map(|x| x.to_le_bytes()).collect(),
+        ));
     }
     if !crs.doubles.is_empty() {
-        records.push(record(USER, 34736, crs.doubles.iter().flat_map(|x| x.to_le_bytes()).collect()));
+        records.push(record(
+            USER,
+            34736,
+            crs.doubles.iter().flat_map(|x| x.to_le_bytes()).collect(),
+        ));
     }
     if !crs.ascii.is_empty() {
         records.push(record(USER, 34737, [crs.ascii.as_bytes(), b"\0"].concat()));

@@ -12,19 +12,25 @@ pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {
     for (name, column) in names(cloud) {
         match (column, name.as_str()) {
             (Column::Position, _) => fields.push((name, 'F', if double { 8 } else { 4 })),
-            (Column::Float, "nx" | "ny" | "nz") => fields.push((format!("normal_{}", &name[1..]), 'F', 4)),
+            (Column::Float, "nx" | "ny" | "nz") => {
+                fields.push((format!("normal_{}", &name[1..]), 'F', 4))
+            }
             (Column::Float, _) => fields.push((name, 'F', 4)),
             // Red stands for all three.
             (Column::Byte, "red") => fields.push(("rgb".into(), 'U', 4)),
             (Column::Byte, _) => {}
         }
     }
-    let all = |value: &dyn Fn(&(String, char, usize)) -> String| fields.iter().map(value).collect::<Vec<_>>().join(" ");
+    let all = |value: &dyn Fn(&(String, char, usize)) -> String| {
+        fields.iter().map(value).collect::<Vec<_>>().join(" ")
+    };
     let points = cloud.points();
     let viewpoint = match &cloud.viewpoints {
         Some(views) if views.of.is_none() => {
             let origin = cloud.origin.unwrap_or_default();
-            views.positions.first().map_or([0.0; 3], |p| [p.x + origin[0], p.y + origin[1], p.z + origin[2]])
+            views.positions.first().map_or([0.0; 3], |p| {
+                [p.x + origin[0], p.y + origin[1], p.z + origin[2]]
+            })
         }
         _ => [0.0; 3],
     };
@@ -47,11 +53,16 @@ pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {
                 false => out.extend((x as f32).to_le_bytes()),
             }
         }
-        triple(&cloud.normals, i).iter().for_each(|n| out.extend(n.to_le_bytes()));
+        triple(&cloud.normals, i)
+            .iter()
+            .for_each(|n| out.extend(n.to_le_bytes()));
         if let &[r, g, b] = triple(&cloud.colors, i) {
             out.extend([b, g, r, 0]);
         }
-        cloud.attributes.iter().for_each(|a| out.extend(a.values[i].to_le_bytes()));
+        cloud
+            .attributes
+            .iter()
+            .for_each(|a| out.extend(a.values[i].to_le_bytes()));
     }
     out
 }

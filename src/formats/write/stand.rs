@@ -11,16 +11,25 @@ use glam::{DMat3, DVec3};
 ///
 /// # Errors
 /// [`Error::BadOption`] where the caller asks, and the cloud does not say its own, or has no length.
-pub(super) fn stand(cloud: &RawCloud, up: Wanted<[f64; 3]>, unit: Wanted<Unit>) -> Result<Option<RawCloud>> {
+pub(super) fn stand(
+    cloud: &RawCloud,
+    up: Wanted<[f64; 3]>,
+    unit: Wanted<Unit>,
+) -> Result<Option<RawCloud>> {
     let turn = match (up.value, cloud.up) {
-        (Some(to), Some(from)) => Some(turn(DVec3::from_array(from), DVec3::from_array(to))).filter(|m| *m != DMat3::IDENTITY),
-        (Some(_), None) if up.asked => return Err(unknown("up", "a cloud that says which way is up")),
+        (Some(to), Some(from)) => Some(turn(DVec3::from_array(from), DVec3::from_array(to)))
+            .filter(|m| *m != DMat3::IDENTITY),
+        (Some(_), None) if up.asked => {
+            return Err(unknown("up", "a cloud that says which way is up"));
+        }
         _ => None,
     };
     let scale = match (unit.value, cloud.unit) {
         (Some(to), Some(from)) => match from.per(to) {
             Some(scale) => Some(scale).filter(|&scale| scale != 1.0),
-            None if unit.asked && from != to => return Err(unknown("unit", "lengths on both sides")),
+            None if unit.asked && from != to => {
+                return Err(unknown("unit", "lengths on both sides"));
+            }
             None => None,
         },
         (Some(_), None) if unit.asked => return Err(unknown("unit", "a cloud that says its unit")),
@@ -35,7 +44,9 @@ pub(super) fn stand(cloud: &RawCloud, up: Wanted<[f64; 3]>, unit: Wanted<Unit>) 
     let mut moved = cloud.clone();
     moved.positions = match &cloud.positions {
         Positions::F32(values) => {
-            let each = values.chunks_exact(3).map(|p| place(DVec3::new(p[0].into(), p[1].into(), p[2].into())));
+            let each = values
+                .chunks_exact(3)
+                .map(|p| place(DVec3::new(p[0].into(), p[1].into(), p[2].into())));
             Positions::F32(each.flat_map(|p| p.to_array().map(|x| x as f32)).collect())
         }
         Positions::F64(values) => {
@@ -49,7 +60,9 @@ pub(super) fn stand(cloud: &RawCloud, up: Wanted<[f64; 3]>, unit: Wanted<Unit>) 
             normal.copy_from_slice(&turned.to_array().map(|x| x as f32));
         }
     }
-    moved.origin = cloud.origin.map(|origin| place(DVec3::from_array(origin)).to_array());
+    moved.origin = cloud
+        .origin
+        .map(|origin| place(DVec3::from_array(origin)).to_array());
     moved.viewpoints = cloud.viewpoints.as_ref().map(|views| Viewpoints {
         positions: views.positions.iter().map(|&p| place(p)).collect(),
         of: views.of.clone(),
@@ -84,7 +97,11 @@ fn turn(from: DVec3, to: DVec3) -> DMat3 {
     let (cos, axis) = (from.dot(to), from.cross(to));
     if cos <= -1.0 + 1e-12 {
         // About the axis of the caller's that is most across: x, or else y.
-        let side = if from.x.abs() < 0.5 { DVec3::X } else { DVec3::Y };
+        let side = if from.x.abs() < 0.5 {
+            DVec3::X
+        } else {
+            DVec3::Y
+        };
         let across = (side - from * side.dot(from)).normalize();
         return DMat3::from_cols_array(&std::array::from_fn(|i| {
             let (column, row) = (i / 3, i % 3);
@@ -103,7 +120,11 @@ fn turn(from: DVec3, to: DVec3) -> DMat3 {
 fn unit_axis(direction: DVec3) -> DVec3 {
     let unit = direction.normalize();
     let rounded = unit.round();
-    if (unit - rounded).length() < 1e-6 { rounded } else { unit }
+    if (unit - rounded).length() < 1e-6 {
+        rounded
+    } else {
+        unit
+    }
 }
 
 fn unknown(option: &str, expected: &str) -> Error {
@@ -120,15 +141,29 @@ mod tests {
 
     #[test]
     fn turns_along_axes_are_exact() {
-        let sides = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
+        let sides = [
+            DVec3::X,
+            DVec3::Y,
+            DVec3::Z,
+            -DVec3::X,
+            -DVec3::Y,
+            -DVec3::Z,
+        ];
         for from in sides {
             for to in sides {
                 let m = turn(from, to);
                 assert_eq!(m * from, to);
                 assert_eq!(m.determinant(), 1.0);
-                assert!(m.to_cols_array().iter().all(|x| [0.0, 1.0].contains(&x.abs())));
+                assert!(
+                    m.to_cols_array()
+                        .iter()
+                        .all(|x| [0.0, 1.0].contains(&x.abs()))
+                );
             }
         }
-        assert_eq!(turn(DVec3::Z, DVec3::Y) * DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 3.0, -2.0));
+        assert_eq!(
+            turn(DVec3::Z, DVec3::Y) * DVec3::new(1.0, 2.0, 3.0),
+            DVec3::new(1.0, 3.0, -2.0)
+        );
     }
 }

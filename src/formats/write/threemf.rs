@@ -53,11 +53,19 @@ pub(super) fn write(cloud: &RawCloud, triangles: &[u32]) -> Result<Vec<u8>> {
     }
     model += "<object id=\"2\" type=\"model\"><mesh>\n<vertices>\n";
     for p in positions.chunks_exact(3) {
-        let _ = writeln!(model, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p[0], p[1], p[2]);
+        let _ = writeln!(
+            model,
+            "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>",
+            p[0], p[1], p[2]
+        );
     }
     model += "</vertices>\n<triangles>\n";
     for t in triangles.chunks_exact(3) {
-        let _ = write!(model, "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"", t[0], t[1], t[2]);
+        let _ = write!(
+            model,
+            "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"",
+            t[0], t[1], t[2]
+        );
         if let Some(palette) = &palette {
             let [a, b, c] = [t[0], t[1], t[2]].map(|corner| palette.of[corner as usize]);
             let _ = write!(model, " pid=\"1\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"");

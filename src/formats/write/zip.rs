@@ -14,7 +14,9 @@ pub(super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
         let start = out.len() as u32;
         // Version 2.0, no flags, deflated, the first day of 1980.
         let mut entry = Vec::new();
-        [20, 0, 8, 0, 0x21u16].iter().for_each(|x| entry.extend(x.to_le_bytes()));
+        [20, 0, 8, 0, 0x21u16]
+            .iter()
+            .for_each(|x| entry.extend(x.to_le_bytes()));
         let sizes = [crc32(content), packed.len() as u32, content.len() as u32];
         sizes.iter().for_each(|x| entry.extend(x.to_le_bytes()));
         entry.extend((name.len() as u16).to_le_bytes());
@@ -35,7 +37,9 @@ pub(super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
     out.extend(&directory);
     out.extend(b"PK\x05\x06");
     let count = files.len() as u16;
-    [0, 0, count, count].iter().for_each(|x| out.extend(x.to_le_bytes()));
+    [0, 0, count, count]
+        .iter()
+        .for_each(|x| out.extend(x.to_le_bytes()));
     out.extend((directory.len() as u32).to_le_bytes());
     out.extend(at.to_le_bytes());
     out.extend(0u16.to_le_bytes());
@@ -45,7 +49,13 @@ pub(super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
 /// The checksum of ISO 3309, by the byte.
 fn crc32(bytes: &[u8]) -> u32 {
     let table: [u32; 256] = std::array::from_fn(|i| {
-        (0..8).fold(i as u32, |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
+        (0..8).fold(i as u32, |c, _| {
+            if c & 1 == 1 {
+                0xedb8_8320 ^ (c >> 1)
+            } else {
+                c >> 1
+            }
+        })
     });
     let step = |crc: u32, &byte: &u8| table[(crc as u8 ^ byte) as usize] ^ (crc >> 8);
     !bytes.iter().fold(!0, step)
