@@ -9,7 +9,8 @@ import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
-import { readFile, readerError, readerOf } from '../files/reading.js';
+import { readScan } from '../files/archive.js';
+import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
 import { slicesOf } from '../files/byte-source.js';
 
@@ -111,8 +112,7 @@ export class Engine {
     const file = slicesOf(data, transfer);
     const given = { name: data.name, ...own };
     return this.#queued(watch, async (signal) => {
-      const reader = await readerOf(file, own.format);
-      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+      return readScan((reader, job) => this.#withReader(reader, signal, job), file, given, { signal, onProgress: watch.onProgress });
     });
   }
 

@@ -99,7 +99,12 @@ const RECONSTRUCT = {
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
-  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57'), fallback: undefined },
+  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57', 'ptx', 'grid', 'tif', '3mf', 'splat', 'spz'), fallback: undefined },
+  columns: rule('an array of column names with x, y and z', (value) => Array.isArray(value) && value.every((name) => typeof name === 'string')),
+  delimiter: rule("one character, ' ' for blanks", (value) => typeof value === 'string' && value.length === 1),
+  decimal: { ...choice('.', ','), fallback: undefined },
+  skip: integer(0, Number.MAX_SAFE_INTEGER, 0),
+  sentinels: choice('drop', 'keep'),
 };
 
 const WRITE = {
@@ -123,8 +128,8 @@ export const ENGINE = {
   workerUrl: rule("the URL of the worker's script", isUrl),
   idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
-    'the URL of the folder that holds single/, threads/, files/, las/ and e57/, or an object { single, threads, files, las, e57 } of file URLs',
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => ['single', 'threads', 'files', 'las', 'e57'].includes(key) && isUrl(value[key]))),
+    'the URL of the folder that holds single/, threads/, files/, las/, e57/ and packed/, or an object { single, threads, files, las, e57, packed } of file URLs',
+    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => ['single', 'threads', 'files', 'las', 'e57', 'packed'].includes(key) && isUrl(value[key]))),
   ),
 };
 

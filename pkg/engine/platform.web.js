@@ -41,6 +41,7 @@ function wasmFile(build, given) {
     files: () => new URL('../wasm/files/pointweave_bg.wasm', import.meta.url),
     las: () => new URL('../wasm/las/pointweave_bg.wasm', import.meta.url),
     e57: () => new URL('../wasm/e57/pointweave_bg.wasm', import.meta.url),
+    packed: () => new URL('../wasm/packed/pointweave_bg.wasm', import.meta.url),
   }[build]();
   if (!given) return file.href;
   if (typeof given === 'string' || given instanceof URL) return new URL(`${given}`.replace(/\/?$/, `/${build}/pointweave_bg.wasm`), location.href).href;
