@@ -45,7 +45,9 @@ fn colours_come_in_bytes_floats_and_sixteen_bits() {
         ("float", "1 0.5 0", [255, 128, 0]),
         ("float", "200 100 0", [200, 100, 0]),
         ("ushort", "65535 257 0", [255, 1, 0]),
-        ("int", "300 -5 0", [1, 0, 0]),
+        ("ushort", "4095 2048 0", [255, 128, 0]),
+        ("ushort", "255 256 0", [1, 1, 0]),
+        ("int", "65535 -5 0", [255, 0, 0]),
     ] {
         let cloud = read(ply(kind, text).as_bytes(), Format::Ply).unwrap();
         assert_eq!(cloud.colors.unwrap()[..3], bytes, "{kind} {text}");
@@ -217,11 +219,9 @@ fn what_is_written_reads_back_to_the_same_bits() {
         for ascii in [false, true] {
             let bytes = write(&cloud, None, output(format), text(ascii)).unwrap();
             assert_eq!(detect(&bytes, None).unwrap(), format);
-            assert_eq!(
-                read(&bytes, format).unwrap(),
-                cloud,
-                "{format:?} ascii {ascii}"
-            );
+            let mut back = read(&bytes, format).unwrap();
+            back.columns.clear();
+            assert_eq!(back, cloud, "{format:?} ascii {ascii}");
         }
     }
     let triangles = [0, 1, 2, 2, 1, 3];

@@ -6,8 +6,8 @@ import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { EXPORTED, checkCoreOptions, checkModel, checkOptions } from './options.js';
-import { finder } from '../files/beside.js';
-import { readFile, readerError, readerOf } from '../files/reading.js';
+import { readScan } from '../files/archive.js';
+import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
 import { slicesOf } from '../files/byte-source.js';
 
@@ -90,20 +90,17 @@ async function read({ compile, loadGlue }, wasmUrl, data, options) {
   const { own, transfer, signal = NEVER, onProgress } = checkOptions('read', options);
   signal.throwIfAborted();
   const file = slicesOf(data, transfer);
-  const build = await readerOf(file, own.format);
-  const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
-  const host = await inProcessHost(glue, { build, module });
-  const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
-  const decode = async (/** @type {Uint8Array} */ bytes) => {
-    const [module, glue] = await Promise.all([compile('pictures', wasmUrl), loadGlue('pictures')]);
-    const pictures = await inProcessHost(glue, { build: 'pictures', module });
-    return pictures.run({ call: 'decodePicture', args: [bytes] }, { signal });
+  /** @type {import('../files/archive.js').Open} */
+  const open = async (build, job) => {
+    const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
+    const host = await inProcessHost(glue, { build, module });
+    try {
+      return await awake(job((request) => host.run(request, { signal })));
+    } catch (error) {
+      throw readerError(error, build);
+    }
   };
-  try {
-    return await awake(readFile((request) => host.run(request, { signal }), file, given, { signal, onProgress }, { find: finder(beside), decode }));
-  } catch (error) {
-    throw readerError(error, build);
-  }
+  return readScan(open, file, { name: data.name, ...own }, { signal, onProgress });
 }
 
 const NEVER = new AbortController().signal;
