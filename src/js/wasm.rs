@@ -249,7 +249,7 @@ fn sign(report: &mut ReduceReport) {
 struct JsProgress(Function);
 
 impl Progress for JsProgress {
-    fn update(&mut self, stage: Stage, fraction: f32) -> crate::Result<()> {
+    fn update(&mut self, stage: Stage, fraction: f32) -> crate::base::error::Result<()> {
         let answer = self
             .0
             .call2(&JsValue::NULL, &stage.name().into(), &fraction.into());

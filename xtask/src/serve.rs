@@ -13,7 +13,14 @@ use crate::tools;
 
 /// The builds that a page needs to show a scan, and those that make it faster or read more formats.
 const FIRST: [Build; 2] = [Build::Single, Build::Files];
-const LATER: [Build; 3] = [Build::Threads, Build::Las, Build::E57];
+const LATER: [Build; 6] = [
+    Build::Packed,
+    Build::Threads,
+    Build::Las,
+    Build::E57,
+    Build::Pictures,
+    Build::Exports,
+];
 
 /// Builds the package and the page, and serves the page until it is stopped.
 pub fn serve(port: u16) -> Result<()> {
@@ -113,7 +120,12 @@ const PAGE: f32 = 0.3;
 fn minutes(build: Build) -> f32 {
     match build {
         Build::Single | Build::Threads => 2.5,
-        Build::Files | Build::Las | Build::E57 => 1.0,
+        Build::Files
+        | Build::Las
+        | Build::E57
+        | Build::Packed
+        | Build::Pictures
+        | Build::Exports => 1.0,
     }
 }
 
