@@ -6,7 +6,7 @@ import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 
 /**
- * @import { FileCloud, PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
  * @import { Frame } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
  * @import { Target } from '../controls/settings.js'
@@ -58,9 +58,19 @@ export class Session extends EventTarget {
   }
 
   /** Reads a file of the person's and makes its mesh. */
-  openFile(/** @type {File} */ file) {
+  openFile(/** @type {File} */ file, /** @type {File[]} */ beside = []) {
     const source = { title: file.name, file: stem(file.name) };
-    return this.#open(source, (signal) => read(file, { name: file.name, signal, onProgress: this.#report(signal) }));
+    return this.#open(source, (signal) => read(file, { name: file.name, beside, signal, onProgress: this.#report(signal) }));
+  }
+
+  /** Keeps with the scan, and with what was made of it, which way is up and what a coordinate is. */
+  stand(/** @type {{ up?: [number, number, number], unit?: Unit }} */ { up, unit }) {
+    const { cloud } = this.scan ?? {};
+    if (!cloud) return;
+    for (const one of [cloud, this.outcome?.reduced, this.outcome?.mesh]) {
+      if (one && up) one.up = up;
+      if (one && unit) one.unit = unit;
+    }
   }
 
   /** Reads a file beside the page and makes its mesh. */
