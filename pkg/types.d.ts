@@ -120,6 +120,9 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   attributes?: Record<string, Float32Array>;
   origin?: [number, number, number];
   up?: [number, number, number];
+  unit?: Unit;
+  crs?: Crs;
+  faces?: number;
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */

@@ -117,9 +117,9 @@ test('what of a file is no point is told', async (t) => {
   const header = (count) => `ply\nformat ascii 1.0\nelement vertex ${count}\nproperty float x\nproperty float y\nproperty float z\nproperty float value\n`;
   writeFileSync(join(path, 'some.ply'), `${header(5)}element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 nan\n0 1 0 1\nnan 0 0 1\n0 0 1 1\n3 0 1 2\n`);
   writeFileSync(join(path, 'none.ply'), `${header(2)}end_header\n0 inf 0 1\nnan 0 0 1\n`);
-  const { stdout } = await good(path, ['inspect', 'some.ply']);
+  const { stdout } = await good(path, ['inspect', 'some.ply', '--faces', 'vertices']);
   for (const said of [/points +4\n/, /not finite +1 more, left out\n/, /of that +1 not finite, taken for 0\n/, /faces +1, not read\n/]) assert.match(String(stdout), said);
-  const { stderr } = await good(path, ['reduce', 'some.ply', '-o', 'one.ply', '--count', '1']);
+  const { stderr } = await good(path, ['reduce', 'some.ply', '-o', 'one.ply', '--count', '1', '--faces', 'vertices']);
   assert.match(stderr, /4 → 1 point, .* s; 1 point that is not finite left out\n$/);
   const none = await run(path, ['reconstruct', 'none.ply', '-o', 'mesh.ply']);
   assert.deepEqual([none.code, none.stderr], [1, 'pointweave: none.ply: the file has 2 points, none of them finite\n']);
