@@ -6,7 +6,7 @@ import { sharedEngine } from './engines.js';
 import { fetchBytes } from './fetching.js';
 import { inTurn } from './turns.js';
 
-/** @import { EngineOptions, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
+/** @import { EngineOptions, Orientation, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
 /** @import { Stage, View } from '../element.js' */
 
 /**
@@ -17,6 +17,8 @@ import { inTurn } from './turns.js';
  * @property {() => boolean} seen
  * @property {EngineOptions} engine
  */
+
+/** What is asked for. @typedef {{ target?: Target, orientation: Orientation, flip: boolean }} Wish */
 
 /** What share of the whole each part takes, about. */
 const FETCHED = { glb: 0.9, points: 0.7, computed: 0.2 };
@@ -54,10 +56,10 @@ export class Scan {
   /**
    * Computes what a view needs. A mesh brings its reduced cloud along.
    * @param {View} view
-   * @param {Target | undefined} target
+   * @param {Wish} wish
    * @param {Work} work
    */
-  async make(view, target, work) {
+  async make(view, { target, ...side }, work) {
     const { signal, onProgress, seen } = work;
     const before = this.#done;
     this.#done = 0;
@@ -71,7 +73,7 @@ export class Scan {
       if (view === 'reduced') {
         this.reduced = await engine.reduce(this.cloud, { target, ...options });
       } else {
-        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...options });
+        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...side, ...options });
         this.reduced = this.mesh.cloud;
       }
     });
@@ -86,7 +88,7 @@ export class Scan {
  * @returns {Promise<Glb | Scan>}
  */
 export async function openSource(src, view, { signal, onProgress, engine: options }) {
-  const likely = /\.glb$/i.test(nameOf(src)) ? 'glb' : view === 'points' ? 'points' : 'computed';
+  const likely = isNamedGlb(src) ? 'glb' : view === 'points' ? 'points' : 'computed';
   onProgress('fetch', 0);
   const bytes = await fetchBytes(src, { signal, onProgress: (fraction) => onProgress('fetch', FETCHED[likely] * fraction) });
   if (isGlb(bytes)) {
@@ -104,6 +106,11 @@ export async function openSource(src, view, { signal, onProgress, engine: option
     onProgress: ({ overall }) => onProgress('read', FETCHED[kind] + (READ[kind] - FETCHED[kind]) * overall),
   });
   return new Scan(cloud, READ[kind]);
+}
+
+/** What is named so is likely to be one. @param {string} src */
+export function isNamedGlb(src) {
+  return /\.glb$/i.test(nameOf(src));
 }
 
 /** The four bytes that every GLB begins with. @param {Uint8Array} bytes */

@@ -32,6 +32,14 @@ import { kept, leftOutOf } from './left-out.js';
  * @property {string[]} columns
  * @property {string[]} notes
  * @property {FileCloud['file']['table']} [preview]
+ * @property {Stations} [stations] where the points were seen from
+ * @property {[number, number, number]} [up]
+ * @property {boolean} seenFromAbove
+ */
+
+/**
+ * A scanner's positions; of each run of points the first, and the index of the position that saw it.
+ * @typedef {{ positions: Float64Array, starts: Float64Array, of: Uint32Array }} Stations
  */
 
 export class Columns {
@@ -66,11 +74,13 @@ export class Columns {
    * @param {Summary} summary
    * @returns {FileCloud}
    */
-  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, leftOut, skipped, columns, notes, preview, ...rest }) {
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, leftOut, skipped, columns, notes, preview, stations, up, seenFromAbove, ...rest }) {
     let positions = this.#take('positions') ?? new Float32Array(0);
     const out = leftOutOf(/** @type {Float32Array | Float64Array} */ (positions), leftOut);
     /** @template {Values} T @param {T} values */
     const left = (values, each = 3) => (out ? kept(values, out, each) : values);
+    const viewpoints = stations && viewpointsOf(stations, this.points);
+    if (viewpoints?.of) viewpoints.of = left(viewpoints.of, 1);
     positions = left(positions);
     const normals = this.#take('normals');
     const colors = hasColors ? this.#take('colors') : undefined;
@@ -82,6 +92,9 @@ export class Columns {
       ...(normals && hasNormals && { normals: left(normals) }),
       ...(colors && { colors: left(colors instanceof Uint8Array ? colors : toBytes(/** @type {Float32Array} */ (colors), colorScale)) }),
       ...(attributes.length > 0 && { attributes: Object.fromEntries(attributes) }),
+      ...(viewpoints && { viewpoints }),
+      ...(up && { up }),
+      ...(seenFromAbove && { seenFromAbove }),
       ...(columns.length > 0 && { columns }),
       skipped: why,
       file: { format, dropped, replaced, faces, notes, ...(preview && { table: preview }) },
@@ -110,7 +123,7 @@ export class Columns {
   }
 }
 
-/** @typedef {Uint8Array | Float32Array | Float64Array} Values */
+/** @typedef {Uint8Array | Uint32Array | Float32Array | Float64Array} Values */
 
 /** An array that grows. */
 class Column {
@@ -161,6 +174,14 @@ function convert(type, from) {
     const length = typeof from === 'number' ? from : from.length;
     throw new PointweaveError({ code: 'out-of-memory', message: `there is no memory for ${length} values of the file's points`, found: String(error) });
   }
+}
+
+/** As `src/formats/stations.rs` does it. @param {Stations} stations @param {number} points */
+function viewpointsOf({ positions, starts, of: stations }, points) {
+  if (stations.every((station) => station === 0)) return { positions };
+  const of = convert(Uint32Array, points);
+  stations.forEach((station, i) => of.fill(station, starts[i], starts[i + 1]));
+  return { positions, of };
 }
 
 /** As `src/formats/table.rs` does it, in single precision. @param {Float32Array} colors @param {number} scale */

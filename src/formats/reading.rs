@@ -5,7 +5,7 @@ use super::input::{Input, Place};
 use super::options::ReadOptions;
 use super::sentinels::LeftOut;
 use super::table::{Block, Table, Verdict};
-use super::{Format, Positions, RawCloud, detect};
+use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
 use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
@@ -90,6 +90,12 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// The first rows of a table of text.
     pub preview: Option<Preview>,
+    /// Where the points were seen from.
+    pub stations: Stations,
+    /// As in [`RawCloud`].
+    pub up: Option<[f64; 3]>,
+    /// As in [`RawCloud`].
+    pub seen_from_above: bool,
 }
 
 impl Reading {
@@ -165,8 +171,9 @@ impl Reading {
         let table = self.table.as_ref();
         let parser = self.parser.as_ref();
         let keep = self.options.keep_sentinels;
+        let format = self.format.unwrap_or(Format::Xyz);
         Summary {
-            format: self.format.unwrap_or(Format::Xyz),
+            format,
             points: table.map_or(0, |table| table.rows),
             verdict: table.map_or_else(none, |table| table.verdict(keep)),
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
@@ -176,6 +183,9 @@ impl Reading {
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
             preview: parser.and_then(|parser| parser.preview()),
+            stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
+            up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
+            seen_from_above: format.is_airborne(),
         }
     }
 
@@ -189,6 +199,8 @@ impl Reading {
             faces,
             columns,
             notes,
+            up,
+            seen_from_above,
             ..
         } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
@@ -198,6 +210,8 @@ impl Reading {
             faces,
             columns,
             notes,
+            up,
+            seen_from_above,
             ..cloud
         })
     }

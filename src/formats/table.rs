@@ -2,8 +2,8 @@
 
 use super::colors::{ColorRange, Tally};
 use super::sentinels::{LeftOut, Sentinels, Why};
-use super::{Positions, RawCloud};
-use crate::cloud::Attribute;
+use super::{Positions, RawCloud, Stations};
+use crate::cloud::{Attribute, Viewpoints};
 
 /// Which columns of a row hold what.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,6 +147,8 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    /// Where the rows were seen from.
+    pub(super) stations: Stations,
     /// Rows left out because a coordinate is not finite.
     pub(super) dropped: usize,
     /// Rows left out because the file marks them as invalid.
@@ -173,6 +175,7 @@ impl Table {
             normals_used: false,
             colors_said: true,
             normals_said: true,
+            stations: Stations::default(),
             dropped: 0,
             invalid: 0,
             no_data: 0,
@@ -240,6 +243,14 @@ impl Table {
         self.block.normals.get_or_insert_default().extend(normal);
     }
 
+    /// The rows from here on were seen from `position`; `None` where the file does not tell.
+    pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
+        self.stations.begin(self.rows, position);
+        if let Some(position) = position {
+            self.sentinels.seen_from(position);
+        }
+    }
+
     /// The rows since the last block.
     pub(super) fn take_block(&mut self) -> Block {
         let mut block = std::mem::replace(&mut self.block, self.columns.empty_block());
@@ -275,13 +286,6 @@ impl Table {
         }
     }
 
-    /// The rows from here on were seen from `position`; `None` where the file does not tell.
-    pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
-        if let Some(position) = position {
-            self.sentinels.seen_from(position);
-        }
-    }
-
     /// Rows that were left out, by why; `later` had no data, or no return, as the end told.
     pub(super) fn skipped(&self, later: [u64; 2]) -> Vec<(&'static str, u64)> {
         let counts = [
@@ -302,7 +306,8 @@ impl Table {
     pub(super) fn finish(mut self, keep: bool) -> RawCloud {
         let verdict = self.verdict(keep);
         let mut block = self.take_block();
-        let [no_data, no_return] = block.leave_out(&verdict.left_out);
+        let mut viewpoints = self.stations.viewpoints(self.rows as usize);
+        let [no_data, no_return] = block.leave_out(&verdict.left_out, &mut viewpoints);
         let Block {
             positions,
             normals,
@@ -330,6 +335,7 @@ impl Table {
         cloud.attributes = attributes;
         cloud.dropped = self.dropped + self.invalid;
         cloud.skipped = self.skipped([no_data, no_return]);
+        cloud.viewpoints = viewpoints;
         cloud.replaced = self.replaced;
         cloud
     }
@@ -337,7 +343,11 @@ impl Table {
 
 impl Block {
     /// Leaves out points that are none; how many had no data, and how many were no returns.
-    fn leave_out(&mut self, left_out: &LeftOut) -> [u64; 2] {
+    fn leave_out(
+        &mut self,
+        left_out: &LeftOut,
+        viewpoints: &mut Option<Viewpoints>,
+    ) -> [u64; 2] {
         let mut counts = [0; 2];
         if left_out.is_empty() {
             return counts;
@@ -356,6 +366,9 @@ impl Block {
         match &mut self.positions {
             Positions::F32(values) => retain(values, 3, &keep),
             Positions::F64(values) => retain(values, 3, &keep),
+        }
+        if let Some(of) = viewpoints.as_mut().and_then(|all| all.of.as_mut()) {
+            retain(of, 1, &keep);
         }
         if let Some(normals) = &mut self.normals {
             retain(normals, 3, &keep);

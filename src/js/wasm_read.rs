@@ -6,10 +6,10 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, Format, LeftOut, Positions, Preview, ReadOptions, Reading, Summary,
+    Block, ColorValues, Format, LeftOut, Positions, Preview, ReadOptions, Reading, Stations, Summary,
 };
 use crate::js::{JsResult, object, optional};
-use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array};
+use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 
@@ -194,6 +194,14 @@ fn summary(summary: &Summary) -> JsResult {
                 None => JsValue::UNDEFINED,
             },
         ),
+        ("stations", stations(&summary.stations)?),
+        (
+            "up",
+            optional(&summary.up, |up| {
+                up.map(JsValue::from).iter().collect::<Array>()
+            }),
+        ),
+        ("seenFromAbove", summary.seen_from_above.into()),
     ])
 }
 
@@ -225,5 +233,21 @@ fn table(preview: &Preview) -> JsResult {
         ("delimiter", String::from(preview.delimiter).into()),
         ("decimal", String::from(preview.decimal).into()),
         ("weak", preview.weak.into()),
+    ])
+}
+
+/// `{ positions, starts, of }`: the positions, and for each run of points the first of them and the index of its position.
+fn stations(stations: &Stations) -> JsResult {
+    if !stations.is_known() {
+        return Ok(JsValue::UNDEFINED);
+    }
+    let Stations { positions, runs } = stations;
+    let positions: Vec<f64> = positions.iter().flat_map(|p| p.to_array()).collect();
+    let starts: Vec<f64> = runs.iter().map(|run| run.start as f64).collect();
+    let of: Vec<u32> = runs.iter().map(|run| run.station).collect();
+    object([
+        ("positions", Float64Array::from(&positions[..]).into()),
+        ("starts", Float64Array::from(&starts[..]).into()),
+        ("of", Uint32Array::from(&of[..]).into()),
     ])
 }

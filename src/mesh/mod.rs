@@ -15,8 +15,10 @@ pub(crate) mod dual;
 pub mod field;
 pub(crate) mod lattice;
 pub(crate) mod loops;
+pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
+pub(crate) mod surface;
 pub(crate) mod trim;
 
 use crate::base::error::Result;
@@ -28,29 +30,8 @@ use crate::mesh::simplify::simplify;
 use crate::mesh::trim::{Holes, decide_holes, drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
-/// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
-/// Positions are in the unit frame.
-pub trait Implicit: Sync {
-    /// Memory that one evaluating worker reuses; what is left in it must not change a result.
-    type Scratch;
-
-    /// A new [`Implicit::Scratch`].
-    fn scratch(&self) -> Self::Scratch;
-
-    /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
-    fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
-
-    /// The fitted values at positions close to each other, one a position; NaN where no fitted function reaches.
-    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch);
-
-    /// The fitted values with their gradients, one a position; `None` where no fitted function reaches.
-    fn gradients(
-        &self,
-        at: &[DVec3],
-        found: &mut [Option<(f64, DVec3)>],
-        scratch: &mut Self::Scratch,
-    );
-}
+pub use crate::mesh::surface::{Implicit, Mesh};
+pub use crate::mesh::trim::MOST_FILLED;
 
 /// Options of [`extract`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,17 +47,6 @@ pub struct ExtractParams {
     pub most: Option<usize>,
 }
 
-/// A triangle mesh in the unit frame.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Mesh {
-    /// Positions; every one is used by a triangle.
-    pub vertices: Vec<Vec3>,
-    /// Unit normals that point outward, one a vertex.
-    pub normals: Vec<Vec3>,
-    /// Vertex indices, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-}
-
 /// What [`extract`] makes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Extracted {
@@ -89,10 +59,6 @@ pub struct Extracted {
     /// Components that were left open.
     pub open: usize,
 }
-
-/// [`Boundary::Auto`] keeps what closes a component as long as it is at most this share of the closed component's area.
-/// A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile 0.5 or more.
-pub const MOST_FILLED: f64 = 0.35;
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
 ///

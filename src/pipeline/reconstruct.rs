@@ -2,7 +2,7 @@
 
 use crate::base::clock::Clock;
 use crate::base::error::{Error, Result};
-use crate::base::params::{Outliers, Resolution, SurfaceParams};
+use crate::base::params::{Orientation, Outliers, Resolution, SurfaceParams};
 use crate::base::progress::Progress;
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
@@ -20,7 +20,7 @@ use crate::pipeline::reduce::reduce_report;
 use crate::pipeline::results::{Distances, ReducedCloud, Surface};
 use crate::pipeline::sites::{Reduction, points_to_fit, sites};
 use crate::report::distance::{mesh_distances, vertex_distances};
-use crate::report::{self, DistanceStats, SurfaceReport};
+use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -37,7 +37,8 @@ const TRIANGLES: usize = 3;
 ///
 /// # Errors
 /// [`Error::TooFewPoints`] (under 4), [`Error::Degenerate`] (all points on a line or at one place),
-/// [`Error::BadOption`] (`orient: false` without normals too), [`Error::Cancelled`].
+/// [`Error::BadOption`] (`orient: false`, or an `orientation` by evidence that the cloud has not got, too),
+/// [`Error::Cancelled`].
 pub fn reconstruct(
     cloud: &Cloud,
     params: &SurfaceParams,
@@ -137,7 +138,7 @@ impl<'a> Measured<'a> {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions): Reduction,
+    (mut reduced, positions, evidence): Reduction,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -158,10 +159,27 @@ fn surface(
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
     }
-    let signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
+    let evidence = evidence.at_sites(&site_of, sites.tree.points.len());
+    let rules = (params.orientation, params.propagation);
+    let mut signs = orient::orient(&fits, &sites, &evidence, rules, &mut clock)?;
+    // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
+    let inward = signs.look_inward(&sites);
+    if inward {
+        signs.invert();
+    }
     let field = Field::new(&fits, &signs, &sites);
     let how = extract_params(&sites, params);
-    let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    drop(field);
+    if inward {
+        signs.invert();
+    }
+    if inward != params.flip {
+        mesh.invert();
+    }
+    if params.flip {
+        signs.invert();
+    }
 
     let normals = reduced.cloud.normals.get_or_insert_default();
     normals.resize(reduced.cloud.points.len(), Vec3::ZERO);
@@ -195,8 +213,14 @@ fn surface(
     origin.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
+    let (low, high) = world_box(&input, &reduced.cloud);
+    let mut doubts = report::doubts_of_shape(low, high, report.distance.rms);
+    doubts.extend(report::doubts(&signs.account));
     let surface_report = SurfaceReport {
-        reduce: report.clone(),
+        reduce: ReduceReport {
+            doubts,
+            ..report.clone()
+        },
         triangles: mesh.triangles.len(),
         components: topology.components,
         boundary_edges: topology.boundary_edges,
@@ -207,6 +231,7 @@ fn surface(
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
         orientation_energy_before: signs.energy_before,
+        orientation: signs.account,
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
@@ -217,6 +242,18 @@ fn surface(
         distances,
         report: surface_report,
     })
+}
+
+/// Corners of the bounding box of points in the cloud's unit frame, in world coordinates.
+fn world_box(points: &[Vec3], cloud: &Cloud) -> ([f64; 3], [f64; 3]) {
+    let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let origin = cloud.origin.unwrap_or_default();
+    let world = |corner| {
+        let p = cloud.frame.to_caller(corner);
+        [0, 1, 2].map(|axis| p[axis] + origin[axis])
+    };
+    (world(low), world(high))
 }
 
 /// Whether strays are dropped before a surface is made.
@@ -246,6 +283,18 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
             option: "orient".into(),
             expected: "true, or a cloud with normals".into(),
             found: "false and no normals".into(),
+        });
+    }
+    let (lacks, evidence) = match params.orientation {
+        Orientation::Normals => (cloud.normals.is_none(), "normals"),
+        Orientation::Viewpoints => (cloud.viewpoints.is_none(), "viewpoints"),
+        _ => (false, ""),
+    };
+    if lacks {
+        return Err(Error::BadOption {
+            option: "orientation".into(),
+            expected: format!("a cloud with {evidence}"),
+            found: format!("'{evidence}' and the cloud has none"),
         });
     }
     match &params.reduce {

@@ -4,18 +4,20 @@ use crate::base::error::Result;
 use crate::base::params::{ReduceParams, SurfaceParams, Target};
 use crate::base::progress::Progress;
 use crate::cloud::Cloud;
+use crate::cloud::copies::copies;
 use crate::cloud::octree::Octree;
+use crate::features::Features;
 use crate::features::noise::Scales;
-use crate::features::{self, Features};
 use crate::fit::cells::Sites;
+use crate::orient::evidence::Evidence;
 use crate::reduce::{self, Reduced};
 use glam::Vec3;
 
 /// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
 const MIN_REDUCED: usize = 64;
 
-/// The reduced cloud, and where its points are for the fit.
-pub(crate) type Reduction = (Reduced, Vec<Vec3>);
+/// The reduced cloud, where its points are for the fit, and what is known of their outer side.
+pub(crate) type Reduction = (Reduced, Vec<Vec3>, Evidence);
 
 /// The reduced cloud that surfaces are fitted to, and where its points are for that.
 pub(crate) fn points_to_fit(
@@ -40,7 +42,8 @@ pub(crate) fn points_to_fit(
                 Some(spare) if is_few(reduced.cloud.len()) => features = spare,
                 _ => {
                     let positions = reduced.cloud.points.clone();
-                    return Ok((reduced, positions));
+                    let evidence = evidence(cloud, tree, &reduced);
+                    return Ok((reduced, positions, evidence));
                 }
             }
         }
@@ -56,7 +59,12 @@ pub(crate) fn points_to_fit(
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    Ok((reduced, positions))
+    let evidence = evidence(cloud, tree, &reduced);
+    Ok((reduced, positions, evidence))
+}
+
+fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
+    Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
 }
 
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for
@@ -74,7 +82,7 @@ pub(crate) fn sites(
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);
-    let copies = features::copies(&all.points);
+    let copies = copies(&all.points);
     let distinct: Vec<Vec3> = copies.iter().map(|c| all.points[c.start]).collect();
     let index = |k: usize| framed[all.order[k] as usize];
     let mut site_of = vec![None; positions.len()];

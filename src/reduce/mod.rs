@@ -1,12 +1,15 @@
 //! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
 
 pub(crate) mod borders;
+pub mod clustering;
 pub mod clusters;
 pub mod density;
+pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
 pub mod paper;
 pub mod placement;
+pub mod shares;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
 
@@ -22,10 +25,12 @@ use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
-use crate::reduce::clusters::{SHARES, Samples, Settling, Shares};
+use crate::reduce::clustering::Clustering;
+use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::placement::{Members, Placed};
+use crate::reduce::shares::{SHARES, Shares};
 use crate::reduce::surroundings::Around;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
@@ -72,23 +77,6 @@ pub struct ReduceStats {
     pub kept: usize,
 }
 
-/// Cluster centres and how the points are shared among them, in the octree's order: what both methods hand on.
-#[derive(Debug, Clone)]
-pub struct Clustering {
-    /// Centres, in the unit frame.
-    pub centers: Vec<Vec3>,
-    /// Memberships of every point in its nearest centres.
-    pub shares: Vec<Shares>,
-    /// Wanted spacing at every point.
-    pub spacing: Vec<f32>,
-    /// Sub-domains, as ranges of the octree's points.
-    pub cells: Vec<Range<usize>>,
-    /// Sweeps.
-    pub iterations: usize,
-    /// Points kept as they are.
-    pub kept: usize,
-}
-
 /// Reduces a cloud of at least one point, whose positions are taken from its `tree`. Features are freed as soon as nothing
 /// asks for them any more.
 ///
@@ -102,7 +90,7 @@ pub fn reduce(
     progress: &mut dyn Progress,
 ) -> Result<Reduced> {
     params.validate()?;
-    let power = Fuzzifier::new(fuzzifier(params));
+    let power = Fuzzifier::new(params.fuzzifier(params.method));
     let mut job = Job {
         tree,
         features,
@@ -172,14 +160,6 @@ fn corners(points: &[Vec3]) -> [Vec3; 2] {
     let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
     [low, high]
-}
-
-/// m of eq. 1-5, by default the method's.
-fn fuzzifier(params: &ReduceParams) -> f64 {
-    params.fuzzifier.unwrap_or(match params.method {
-        Method::Adaptive => 1.5,
-        Method::Paper => 2.0,
-    })
 }
 
 /// What the options ask for.
@@ -314,7 +294,7 @@ impl Job<'_> {
         members: &Members,
         plan: Plan,
     ) -> Vec<Placed> {
-        let power = Fuzzifier::new(fuzzifier(self.params));
+        let power = Fuzzifier::new(self.params.fuzzifier(self.params.method));
         let mut placed = placement::place(
             self.tree,
             &self.features,
@@ -378,9 +358,9 @@ fn adaptive(
         spacing: &spacing,
     };
     let settling = Settling {
-        fuzzifier: fuzzifier(params),
-        epsilon: params.epsilon.unwrap_or(1e-2),
-        max_iterations: params.max_iterations.unwrap_or(5),
+        fuzzifier: params.fuzzifier(params.method),
+        epsilon: params.epsilon(Method::Adaptive),
+        max_iterations: params.max_iterations(Method::Adaptive),
     };
     let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
     let clustering = Clustering {

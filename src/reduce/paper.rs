@@ -19,15 +19,16 @@ use glam::Vec3;
 use crate::base::error::Result;
 use crate::base::linalg::sym_eigen;
 use crate::base::par;
-use crate::base::params::{Clusters, ReduceParams, Target};
+use crate::base::params::{Clusters, Method, ReduceParams, Target};
 use crate::base::power::Fuzzifier;
 use crate::base::progress::{Progress, Stage};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::features::Features;
-use crate::reduce::Clustering;
-use crate::reduce::clusters::Shares;
+use crate::reduce::clustering::Clustering;
 use crate::reduce::density;
 use crate::reduce::fcm::{Fcm, FcmParams, Start};
+use crate::reduce::shares::Shares;
 
 /// λ of section 5 where the target is not flatness.
 const LAMBDA: f64 = 3e-4;
@@ -108,12 +109,12 @@ pub fn cluster(
         .sum();
 
     let index = Octree::build(&centers);
-    let fuzzifier = Fuzzifier::new(params.fuzzifier.unwrap_or(2.0));
+    let fuzzifier = Fuzzifier::new(params.fuzzifier(Method::Paper));
     let shares = par::map(
         tree.points.len(),
         Vec::new,
         |k, found: &mut Vec<Neighbor>| {
-            index.knn(tree.points[k], crate::reduce::clusters::SHARES, found);
+            index.knn(tree.points[k], crate::reduce::shares::SHARES, found);
             let near = found.iter().map(|n| index.order[n.index as usize]);
             Shares::of(tree.points[k], &centers, near, fuzzifier)
         },
@@ -209,9 +210,9 @@ fn run(
 
 fn fcm_params(params: &ReduceParams) -> FcmParams {
     FcmParams {
-        fuzzifier: params.fuzzifier.unwrap_or(2.0),
-        epsilon: params.epsilon.unwrap_or(1e-3),
-        max_iterations: params.max_iterations.unwrap_or(100),
+        fuzzifier: params.fuzzifier(Method::Paper),
+        epsilon: params.epsilon(Method::Paper),
+        max_iterations: params.max_iterations(Method::Paper),
     }
 }
 

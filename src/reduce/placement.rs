@@ -15,10 +15,11 @@ use crate::base::lists::{key, ranked, unpack};
 use crate::base::par;
 use crate::base::params::{COLORS, Carry, Placement};
 use crate::base::power::Fuzzifier;
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::cloud::{Attribute, Cloud};
 use crate::features::Features;
-use crate::reduce::clusters::Shares;
+use crate::reduce::shares::Shares;
 
 /// τ of A_k: how much a distance along the surface counts against one across it.
 const TAU: f64 = 0.03;
@@ -283,8 +284,8 @@ pub fn snap(tree: &Octree, members: &Members, placed: &mut [Placed]) -> Vec<u32>
     chosen
 }
 
-/// The reduced cloud's colours and scalars, carried as `attributes` says, and its normal signs, by the mean of the
-/// input's. `nearest` has the nearest input point of every placed one, in the octree's order.
+/// The reduced cloud's colours and scalars, carried as `attributes` says, its normal signs, by the mean of the
+/// input's, and its viewpoints, those of the nearest input points. `nearest` has the nearest input point of every placed one, in the octree's order.
 pub fn carry(
     cloud: &Cloud,
     tree: &Octree,
@@ -343,6 +344,12 @@ pub fn carry(
         normals: Some(each.clone().map(signed).collect()),
         attributes: attributes.collect(),
         origin: cloud.origin,
+        viewpoints: cloud
+            .viewpoints
+            .as_ref()
+            .map(|v| v.select(each.clone().map(closest))),
+        up: cloud.up,
+        seen_from_above: cloud.seen_from_above,
     }
 }
 
@@ -378,7 +385,7 @@ pub(crate) fn color_key([r, g, b]: [u8; 3]) -> u32 {
 mod tests {
     use super::*;
     use crate::base::rng::Rng;
-    use crate::reduce::clusters::SHARES;
+    use crate::reduce::shares::SHARES;
 
     #[test]
     fn members_are_the_points_with_a_share() {

@@ -3,13 +3,14 @@
 #![allow(dead_code)] // every test file takes what it needs
 
 pub mod mesh;
+pub mod scenes;
 
 use glam::{DVec3, Vec3};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::octree::Octree;
-use pointweave::reduce::clusters::{SHARES, Shares};
 use pointweave::reduce::height_field::{Patches, cloud_distances};
+use pointweave::reduce::shares::{SHARES, Shares};
 use std::f64::consts::{PI, TAU};
 
 /// A closed surface of known truth.

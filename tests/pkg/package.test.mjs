@@ -82,7 +82,27 @@ test('what is not called is left out of a bundle, and the worker is not', async 
   };
   assert.equal((await bundled("import 'pointweave'")).bytes, 0);
   assert.equal((await bundled("import 'pointweave/core'")).bytes, 0);
+  assert.equal((await bundled("import 'pointweave/viewer'")).bytes, 0);
   assert.ok((await bundled("import 'pointweave/worker'")).bytes > 1000);
+});
+
+/** Most bytes of each part of the element, minified and gzipped, without three.js: at once, when one nears the viewport, for a GLB. */
+const ELEMENT = { element: 9_700, viewer: 11_000, glb: 2_000 };
+/** And with what they take of three.js. */
+const WITH_THREE = 168_000;
+
+test('the element is not larger than its budget', async () => {
+  const bundle = async (external) => {
+    const { outputFiles } = await build({
+      entryPoints: [path('element.js')], outdir: 'out', nodePaths: [fileURLToPath(new URL('../node_modules', import.meta.url))],
+      bundle: true, minify: true, splitting: true, format: 'esm', write: false, logLevel: 'silent', external,
+    });
+    return (name) => gzipSync(outputFiles.find(({ path }) => new RegExp(`/${name}(-\\w+)?\\.js$`).test(path)).contents, { level: 9 }).length;
+  };
+  const own = await bundle(['three', 'three/*']);
+  for (const [name, most] of Object.entries(ELEMENT)) assert.ok(own(name) <= most, `${name}: ${own(name)} bytes`);
+  const all = await bundle([]);
+  const [viewer, glb, three] = ['viewer', 'glb', 'chunk'].map(all);
 });
 
 /** Most bytes of each part, gzipped. */

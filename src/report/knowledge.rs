@@ -1,0 +1,137 @@
+//! What may not be as it should: doubts.
+
+use crate::orient::account::{Account, Source};
+use serde::Serialize;
+
+/// Something about a result that may not be as it should, for machines and for people.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Doubt {
+    /// Stable, in kebab case.
+    pub code: &'static str,
+    /// A sentence.
+    pub message: String,
+    /// The share of the surface (0-1) that it is about, where that is known.
+    pub share: Option<f64>,
+}
+
+/// Shares of the surface that are not worth a word.
+const LITTLE: f64 = 0.01;
+/// The share of what a sensor says that the result may contradict: grazing views and outlines.
+const GRAZING: f64 = 0.03;
+/// Sources that agree over less than this share disagree.
+const AGREE: f64 = 0.8;
+/// [`crate::orient::account::WeakestTie::strength`] under which a side is as good as a guess.
+const WEAK: f64 = 0.3;
+
+/// A mesh that is farther from the points than this share of the diagonal (root mean square) is none to rely on.
+const FAR: f64 = 0.01;
+/// A piece of land is at most so many degrees wide, and hardly a hundredth as many metres high.
+const DEGREES: f64 = 5.0;
+const STRETCHED: f64 = 100.0;
+
+/// What may be wrong with the shape as a whole: `low` and `high` are the corners of the points' bounding box in world coordinates,
+/// `rms` is their distance to the mesh.
+pub(crate) fn doubts_of_shape(low: [f64; 3], high: [f64; 3], rms: f64) -> Vec<Doubt> {
+    let doubt = |code, message: &str| Doubt {
+        code,
+        message: message.into(),
+        share: None,
+    };
+    let [width, depth, height] = [0, 1, 2].map(|a| high[a] - low[a]);
+    let on_globe = |axis: usize, most: f64| low[axis] >= -most && high[axis] <= most;
+    let across = width.max(depth);
+    let is_land = across > 0.0 && across < DEGREES && height > STRETCHED * across;
+    if is_land && on_globe(0, 180.0) && on_globe(1, 90.0) {
+        return vec![doubt(
+            "degrees-as-lengths",
+            "x and y look like degrees of longitude and latitude, and z like metres, so the shape is drawn out: convert the \
+             scan to a projected coordinate system first.",
+        )];
+    }
+    if rms > FAR {
+        return vec![doubt(
+            "far-from-points",
+            "The mesh is not close to the points: there are too few of them to tell where the surface is, or some lie far \
+             from the rest.",
+        )];
+    }
+    Vec::new()
+}
+
+/// What may be wrong with the sides.
+pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
+    let mut doubts = Vec::new();
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let mut doubt = |code, share: f64, message: String| {
+        doubts.push(Doubt {
+            code,
+            message,
+            share: Some(share),
+        });
+    };
+    if account.guessed > LITTLE {
+        let share = percent(account.guessed);
+        let message = format!("Which side is out is a guess for {share} of the surface.");
+        doubt("side-guessed", account.guessed, message);
+    }
+    let mut disagree = 0.0;
+    for said in &account.sources {
+        let (name, is_sensor) = match said.source {
+            Source::Normals => ("normals", false),
+            Source::Viewpoints => ("viewpoints", true),
+            Source::Camera => ("camera", true),
+            _ => continue,
+        };
+        let against = 1.0 - said.agreement;
+        if said.agreement < AGREE {
+            disagree = f64::max(disagree, against);
+        } else if is_sensor && against > GRAZING {
+            let message = format!(
+                "{} of what the {name} saw shows its inner side.",
+                percent(against)
+            );
+            doubt("contradicts-sensor", against, message);
+        }
+    }
+    if disagree > 0.0 {
+        let message = format!(
+            "What is known of the outer side contradicts itself or the surface over {} of it.",
+            percent(disagree)
+        );
+        doubt("sources-disagree", disagree, message);
+    }
+    if let Some(tie) = account.weakest_tie.filter(|tie| tie.strength < WEAK) {
+        let message = format!(
+            "Next to nothing ties {} of the surface to the rest: it may be inside out.",
+            percent(tie.share)
+        );
+        doubt("weak-tie", tie.share, message);
+    }
+    doubts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(center: [f64; 3], size: [f64; 3], rms: f64) -> Vec<&'static str> {
+        let corner = |side: f64| [0, 1, 2].map(|a| center[a] + side * size[a]);
+        let doubts = doubts_of_shape(corner(-0.5), corner(0.5), rms);
+        doubts.iter().map(|doubt| doubt.code).collect()
+    }
+
+    #[test]
+    fn a_shape_that_is_better_not_relied_on() {
+        assert!(codes([0.0; 3], [1.0, 2.0, 3.0], 5e-4).is_empty());
+        assert_eq!(codes([0.0; 3], [1.0, 2.0, 3.0], 0.03), ["far-from-points"]);
+        let tile = [0.0228, 0.0106, 39.0];
+        assert_eq!(
+            codes([-95.0, 31.0, 60.0], tile, 1e-4),
+            ["degrees-as-lengths"]
+        );
+        // A pole on a map in metres; a statue in metres; points on a line.
+        assert!(codes([637_000.0, 849_000.0, 60.0], [0.02, 0.01, 39.0], 1e-4).is_empty());
+        assert!(codes([0.0; 3], [0.5, 0.5, 2.0], 1e-4).is_empty());
+        assert!(codes([0.0; 3], [0.0, 0.0, 2.0], 1e-4).is_empty());
+    }
+}
