@@ -82,18 +82,18 @@ async function attempt(engine, task, job, done, signal) {
  * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
  * @returns {Promise<Result>}
  */
-async function perform(engine, { command, cloud: said, own, write, format }, { input, output }, watch) {
+async function perform(engine, { command, cloud: said, read, own, write, format }, { input, output }, watch) {
   const { signal } = watch;
   if (output !== undefined && output !== '-') await checkPlace(output);
   const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await openInput(input, signal), { name, ...watch, transfer: true });
+  const cloud = await engine.read(await openInput(input, signal), { name, ...read, ...watch, transfer: true });
   const { file } = cloud;
   if (cloud.positions.length === 0 && file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(file.dropped)}, none of them finite` });
   }
   if (command === 'inspect') {
     const info = await engine.inspect(cloud, watch);
-    return { report: { ...info, file }, text: infoLines(info, cloud), doubts: [] };
+    return { report: { ...info, skipped: cloud.skipped, columns: cloud.columns, file }, text: infoLines(info, cloud), doubts: [] };
   }
   const result = await engine[command](withSaid(cloud, said), { ...own, ...watch, transfer: true });
   const { report } = result;
@@ -102,7 +102,7 @@ async function perform(engine, { command, cloud: said, own, write, format }, { i
     if (output === '-') await print(bytes);
     else await writeOutput(output, bytes, signal);
   }
-  return { report, text: reportLine(report, file), doubts: doubtLines(report) };
+  return { report, text: reportLine(report, cloud), doubts: doubtLines(report) };
 }
 
 /** @param {Task} task @param {Outcome} outcome */
