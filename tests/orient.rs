@@ -9,7 +9,10 @@ use pointweave::SurfaceParams;
 fn every_scene_is_right_side_out() {
     let only = std::env::var("SCENES").unwrap_or_default();
     let mut failures = Vec::new();
-    for recipe in all().iter().filter(|r| r.name.contains(&only) || r.kind.contains(&only)) {
+    for recipe in all()
+        .iter()
+        .filter(|r| r.name.contains(&only) || r.kind.contains(&only))
+    {
         let mut line = format!("{:20} {:45}", recipe.kind, recipe.name);
         for seed in 0..std::env::var("SEEDS").map_or(8, |s| s.parse().unwrap()) {
             let scene = recipe.scene(seed);
@@ -22,9 +25,24 @@ fn every_scene_is_right_side_out() {
                 Sure::Guess => right.max(1.0 - right) >= 0.999 && !doubts.is_empty(),
             };
             let codes: Vec<&str> = doubts.iter().map(|d| d.code).collect();
-            line += &format!(" {}{right:.4}{}", if least { "" } else { "!" }, if codes.is_empty() { String::new() } else { format!("{codes:?}") });
-            if std::env::var("SHOW").is_ok() { println!("{} {:?} {:?}", recipe.name, surface.report.orientation, surface.report.reduce.ms); }
-            if !least { failures.push(format!("{} {seed}", recipe.name)); }
+            line += &format!(
+                " {}{right:.4}{}",
+                if least { "" } else { "!" },
+                if codes.is_empty() {
+                    String::new()
+                } else {
+                    format!("{codes:?}")
+                }
+            );
+            if std::env::var("SHOW").is_ok() {
+                println!(
+                    "{} {:?} {:?}",
+                    recipe.name, surface.report.orientation, surface.report.reduce.ms
+                );
+            }
+            if !least {
+                failures.push(format!("{} {seed}", recipe.name));
+            }
         }
         println!("{line}");
     }

@@ -343,11 +343,7 @@ impl Table {
 
 impl Block {
     /// Leaves out points that are none; how many had no data, and how many were no returns.
-    fn leave_out(
-        &mut self,
-        left_out: &LeftOut,
-        viewpoints: &mut Option<Viewpoints>,
-    ) -> [u64; 2] {
+    fn leave_out(&mut self, left_out: &LeftOut, viewpoints: &mut Option<Viewpoints>) -> [u64; 2] {
         let mut counts = [0; 2];
         if left_out.is_empty() {
             return counts;

@@ -6,7 +6,8 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, Format, LeftOut, Positions, Preview, ReadOptions, Reading, Stations, Summary,
+    Block, ColorValues, Format, LeftOut, Positions, Preview, ReadOptions, Reading, Stations,
+    Summary,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};

@@ -126,7 +126,11 @@ impl Scene {
             let [a, b, c] = t.map(|v| vertices[v as usize]);
             let normal = (b - a).cross(c - a);
             let size = normal.length();
-            let center = t.map(|v| surface.mesh.vertices[v as usize]).iter().sum::<Vec3>() / 3.0;
+            let center = t
+                .map(|v| surface.mesh.vertices[v as usize])
+                .iter()
+                .sum::<Vec3>()
+                / 3.0;
             scanned.knn(center, 1, &mut nearest);
             if size == 0.0 || nearest[0].distance2 > NEAR * NEAR {
                 continue;
@@ -159,7 +163,10 @@ pub fn all() -> Vec<Recipe> {
 impl Recipe {
     /// The scene of a seed.
     pub fn scene(&self, seed: u64) -> Scene {
-        let name = self.name.bytes().fold(7u64, |h, b| h * 31 % 1_000_003 + u64::from(b));
+        let name = self
+            .name
+            .bytes()
+            .fold(7u64, |h, b| h * 31 % 1_000_003 + u64::from(b));
         (self.make)(&mut Rng::new(seed * 1_000_003 + name))
     }
 }

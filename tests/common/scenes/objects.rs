@@ -19,9 +19,13 @@ pub const RECIPES: &[Row] = &[
         let points = boxed(r, 3000, -DVec3::ONE, DVec3::ONE, &[0, 2, 4]);
         out_of_origin(r, points, 0.004).seen_from(DVec3::new(6.0, 5.0, 4.0))
     }),
-    ("bowl or vase", "vase without top and bottom", |r| vase_scene(r, Foot::None)),
+    ("bowl or vase", "vase without top and bottom", |r| {
+        vase_scene(r, Foot::None)
+    }),
     ("bowl or vase", "vase", |r| vase_scene(r, Foot::Bottom)),
-    ("bowl or vase", "vase upside down", |r| vase_scene(r, Foot::Lid)),
+    ("bowl or vase", "vase upside down", |r| {
+        vase_scene(r, Foot::Lid)
+    }),
     ("bowl or vase", "bowl", |r| {
         let rim = range(r, -0.35, 0.1);
         let points = ball(r, 3000, |d| d.z < rim);
@@ -38,16 +42,26 @@ pub const RECIPES: &[Row] = &[
         Scene::new(Sure::Told, noisy(r, 0.001, points), truth)
     }),
     ("on a table", "vase on a disc", |r| on_disc(r, 0, 0)),
-    ("on a table", "vase on a disc, a strand of strays", |r| on_disc(r, 80, 0)),
-    ("on a table", "vase on a disc, two strands of strays", |r| on_disc(r, 120, 60)),
+    ("on a table", "vase on a disc, a strand of strays", |r| {
+        on_disc(r, 80, 0)
+    }),
+    ("on a table", "vase on a disc, two strands of strays", |r| {
+        on_disc(r, 120, 60)
+    }),
     ("on a table", "boxes on a table", boxes_on_table),
     ("on a table", "half balls on a table", balls_on_table),
     ("leaf or wall", "leaf", |r| leaf(r, 0.0)),
     ("leaf or wall", "tilted leaf", |r| leaf(r, 1.0)),
     ("leaf or wall", "upright leaf", |r| leaf(r, PI / 2.0)),
-    ("leaf or wall", "wall with a viewpoint", |r| walls(r, false, 1.0)),
-    ("leaf or wall", "L wall from outside", |r| walls(r, true, -1.0)),
-    ("leaf or wall", "L wall from inside", |r| walls(r, true, 1.0)),
+    ("leaf or wall", "wall with a viewpoint", |r| {
+        walls(r, false, 1.0)
+    }),
+    ("leaf or wall", "L wall from outside", |r| {
+        walls(r, true, -1.0)
+    }),
+    ("leaf or wall", "L wall from inside", |r| {
+        walls(r, true, 1.0)
+    }),
     ("nested or separate", "three shells", |r| {
         let mut points = ball(r, 2600, |_| true);
         points.extend(ball(r, 1300, |_| true).into_iter().map(|d| d * 0.66));
@@ -63,7 +77,11 @@ pub const RECIPES: &[Row] = &[
         let at = direction(r) * range(r, 2.3, 4.0);
         points.extend(ball(r, 1500, |_| true).into_iter().map(|d| d * 0.8 + at));
         let truth = move |p: DVec3, n: DVec3| {
-            let center = if p.distance(at) < p.length() { at } else { DVec3::ZERO };
+            let center = if p.distance(at) < p.length() {
+                at
+            } else {
+                DVec3::ZERO
+            };
             Some(n.dot(p - center) > 0.0)
         };
         Scene::new(Sure::Closed, noisy(r, 0.002, points), truth)
@@ -73,7 +91,11 @@ pub const RECIPES: &[Row] = &[
         let at = direction(r) * range(r, 2.5, 4.0);
         points.extend(ball(r, 1200, |d| d.y < 0.1).into_iter().map(|d| d + at));
         let truth = move |p: DVec3, n: DVec3| {
-            let center = if p.distance(at) < p.length() { at } else { DVec3::ZERO };
+            let center = if p.distance(at) < p.length() {
+                at
+            } else {
+                DVec3::ZERO
+            };
             Some(n.dot(p - center) > 0.0)
         };
         Scene::new(Sure::Told, noisy(r, 0.002, points), truth)
@@ -82,20 +104,39 @@ pub const RECIPES: &[Row] = &[
         let mut points = ball(r, 2400, |_| true);
         let below = -range(r, 1.25, 1.6);
         points.extend(disc(r, 1600, 1.6, below));
-        let truth = |p: DVec3, n: DVec3| Some(if p.length() < 1.1 { n.dot(p) > 0.0 } else { n.z > 0.0 });
+        let truth = |p: DVec3, n: DVec3| {
+            Some(if p.length() < 1.1 {
+                n.dot(p) > 0.0
+            } else {
+                n.z > 0.0
+            })
+        };
         Scene::new(Sure::Guess, noisy(r, 0.003, points), truth)
     }),
-    ("raw scan", "statue with viewpoints", |r| statue(r, Knows::Viewpoints)),
-    ("raw scan", "statue with normals", |r| statue(r, Knows::Normals)),
-    ("raw scan", "statue, nothing known", |r| statue(r, Knows::Nothing)),
-    ("raw scan", "statue with random normals", |r| statue(r, Knows::Rubbish)),
-    ("raw scan", "statue with some normals turned", |r| statue(r, Knows::Mostly)),
+    ("raw scan", "statue with viewpoints", |r| {
+        statue(r, Knows::Viewpoints)
+    }),
+    ("raw scan", "statue with normals", |r| {
+        statue(r, Knows::Normals)
+    }),
+    ("raw scan", "statue, nothing known", |r| {
+        statue(r, Knows::Nothing)
+    }),
+    ("raw scan", "statue with random normals", |r| {
+        statue(r, Knows::Rubbish)
+    }),
+    ("raw scan", "statue with some normals turned", |r| {
+        statue(r, Knows::Mostly)
+    }),
     ("closed object", "ball", |r| {
         let points = ball(r, 3000, |_| true);
         closed(r, points, 0.0)
     }),
     ("closed object", "lumpy ball", |r| {
-        let points = ball(r, 3000, |_| true).into_iter().map(|d| d * lumpy(d)).collect();
+        let points = ball(r, 3000, |_| true)
+            .into_iter()
+            .map(|d| d * lumpy(d))
+            .collect();
         closed(r, points, 0.004)
     }),
     ("closed object", "box", |r| {
@@ -105,7 +146,10 @@ pub const RECIPES: &[Row] = &[
     }),
     ("closed object", "ball before a camera", |r| {
         let shift = DVec3::Z * range(r, 1.6, 3.0);
-        let points = ball(r, 3000, |_| true).into_iter().map(|d| d * 0.5 + shift).collect();
+        let points = ball(r, 3000, |_| true)
+            .into_iter()
+            .map(|d| d * 0.5 + shift)
+            .collect();
         let truth = move |p: DVec3, n: DVec3| Some(n.dot(p - shift) > 0.0);
         Scene::new(Sure::Closed, noisy(r, 0.002, points), truth)
     }),
@@ -186,7 +230,8 @@ fn vase_scene(r: &mut Rng, foot: Foot) -> Scene {
         Foot::Bottom => points.extend(disc(r, 300, vase_radius(0.0, shape), 0.0)),
         Foot::Lid => points.extend(disc(r, 300, vase_radius(1.0, shape), 1.0)),
     }
-    let truth = move |p, n: DVec3| is_at_vase(p, shape).then_some(n.truncate().dot(p.truncate()) > 0.0);
+    let truth =
+        move |p, n: DVec3| is_at_vase(p, shape).then_some(n.truncate().dot(p.truncate()) > 0.0);
     Scene::new(Sure::Told, noisy(r, 0.002, points), truth)
 }
 
@@ -220,13 +265,22 @@ fn on_disc(r: &mut Rng, to_vase: usize, to_disc: usize) -> Scene {
 }
 
 fn boxes_on_table(r: &mut Rng) -> Scene {
-    let mut points = rectangle(r, 2600, DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let mut points = rectangle(
+        r,
+        2600,
+        DVec3::new(-1.0, -1.0, 0.0),
+        DVec3::X * 2.0,
+        DVec3::Y * 2.0,
+    );
     for k in 0..3 {
         let x = -0.65 + 0.6 * f64::from(k) + range(r, -0.05, 0.05);
         let y = range(r, -0.5, 0.4);
         let half = range(r, 0.17, 0.22);
         points.retain(|p| (p.x - x).abs() > half || (p.y - y).abs() > half || p.z > 0.0);
-        let (lo, hi) = (DVec3::new(x - half, y - half, 0.0), DVec3::new(x + half, y + half, 2.0 * half));
+        let (lo, hi) = (
+            DVec3::new(x - half, y - half, 0.0),
+            DVec3::new(x + half, y + half, 2.0 * half),
+        );
         points.extend(boxed(r, 550, lo, hi, &[4]));
     }
     let truth = |_: DVec3, n: DVec3| (n.z.abs() > 0.8).then_some(n.z > 0.0);
@@ -234,11 +288,21 @@ fn boxes_on_table(r: &mut Rng) -> Scene {
 }
 
 fn balls_on_table(r: &mut Rng) -> Scene {
-    let mut points = rectangle(r, 2400, DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let mut points = rectangle(
+        r,
+        2400,
+        DVec3::new(-1.0, -1.0, 0.0),
+        DVec3::X * 2.0,
+        DVec3::Y * 2.0,
+    );
     for k in 0..2 {
         let at = DVec3::new(-0.5 + f64::from(k), range(r, -0.4, 0.4), 0.0);
         points.retain(|p| p.distance(at) > 0.35 || p.z > 0.0);
-        points.extend(ball(r, 800, |d| d.z > 0.0).into_iter().map(|d| d * 0.35 + at));
+        points.extend(
+            ball(r, 800, |d| d.z > 0.0)
+                .into_iter()
+                .map(|d| d * 0.35 + at),
+        );
     }
     let truth = |_: DVec3, n: DVec3| (n.z.abs() > 0.8).then_some(n.z > 0.0);
     Scene::new(Sure::Guess, noisy(r, 0.002, points), truth)
@@ -256,14 +320,22 @@ fn leaf(r: &mut Rng, tilt: f64) -> Scene {
     };
     let points = (0..2800).map(|_| one(r)).collect();
     let up = turn * DVec3::Z;
-    Scene::new(Sure::Guess, noisy(r, 0.003, points), move |_, n| Some(n.dot(up) > 0.0))
+    Scene::new(Sure::Guess, noisy(r, 0.003, points), move |_, n| {
+        Some(n.dot(up) > 0.0)
+    })
 }
 
 /// One wall or two at a right angle, and an eye at one side.
 fn walls(r: &mut Rng, has_second: bool, side: f64) -> Scene {
     let mut points = rectangle(r, 1800, DVec3::ZERO, DVec3::X * 4.0, DVec3::Z * 2.5);
     if has_second {
-        points.extend(rectangle(r, 1800, DVec3::ZERO, DVec3::Y * 4.0, DVec3::Z * 2.5));
+        points.extend(rectangle(
+            r,
+            1800,
+            DVec3::ZERO,
+            DVec3::Y * 4.0,
+            DVec3::Z * 2.5,
+        ));
     }
     let eye = DVec3::new(range(r, 2.0, 4.0), range(r, 2.0, 4.0), 1.5) * DVec3::new(side, side, 1.0);
     let truth = move |_: DVec3, n: DVec3| {
@@ -285,7 +357,8 @@ enum Knows {
 
 /// A lumpy body from six places around it, none below: what is hidden was never scanned.
 fn statue(r: &mut Rng, knows: Knows) -> Scene {
-    let bump = |d: DVec3, phase: f64| lumpy(d) + 0.12 * (5.0 * d.x + phase).sin() * (4.0 * d.z).cos();
+    let bump =
+        |d: DVec3, phase: f64| lumpy(d) + 0.12 * (5.0 * d.x + phase).sin() * (4.0 * d.z).cos();
     let phase = range(r, 0.0, TAU);
     let body: Vec<(DVec3, DVec3)> = ball(r, 6000, |_| true)
         .into_iter()
@@ -300,7 +373,11 @@ fn statue(r: &mut Rng, knows: Knows) -> Scene {
     let start = range(r, 0.0, TAU);
     let eye = |k: usize| {
         let a = start + TAU * k as f64 / 6.0;
-        DVec3::new(4.0 * a.cos(), 4.0 * a.sin(), if k % 2 == 0 { 0.6 } else { 2.0 })
+        DVec3::new(
+            4.0 * a.cos(),
+            4.0 * a.sin(),
+            if k % 2 == 0 { 0.6 } else { 2.0 },
+        )
     };
     let eyes: Vec<DVec3> = (0..6).map(eye).collect();
     let (seen, of) = scanned(r, &body, &eyes, 0.003);

@@ -8,8 +8,12 @@ use pointweave::base::rng::Rng;
 pub const RECIPES: &[Row] = &[
     ("terrain", "hills", |r| terrain(r, 0.5, Sure::Guess)),
     ("terrain", "steep hills", |r| terrain(r, 1.0, Sure::Guess)),
-    ("terrain", "hills from above", |r| terrain(r, 0.8, Sure::Told).seen_from_above()),
-    ("terrain", "hills with up", |r| terrain(r, 0.8, Sure::Told).with_up(DVec3::Z)),
+    ("terrain", "hills from above", |r| {
+        terrain(r, 0.8, Sure::Told).seen_from_above()
+    }),
+    ("terrain", "hills with up", |r| {
+        terrain(r, 0.8, Sure::Told).with_up(DVec3::Z)
+    }),
     ("terrain", "hills with normals", |r| {
         let scene = terrain(r, 0.8, Sure::Told);
         let normals = vec![DVec3::Z; scene.points.len()];
@@ -24,16 +28,27 @@ pub const RECIPES: &[Row] = &[
     ("terrain", "hills over the origin", |r| {
         let mut scene = terrain(r, 0.5, Sure::Guess);
         let lift = range(r, 60.0, 150.0) * if r.uniform() < 0.5 { 1.0 } else { -1.0 };
-        scene.points.iter_mut().for_each(|p| *p += DVec3::new(-25.0, -25.0, lift));
+        scene
+            .points
+            .iter_mut()
+            .for_each(|p| *p += DVec3::new(-25.0, -25.0, lift));
         scene
     }),
     ("town", "town", |r| town(r, Sure::Guess)),
-    ("town", "town from above", |r| town(r, Sure::Told).seen_from_above()),
-    ("town", "town with up", |r| town(r, Sure::Told).with_up(DVec3::Z)),
+    ("town", "town from above", |r| {
+        town(r, Sure::Told).seen_from_above()
+    }),
+    ("town", "town with up", |r| {
+        town(r, Sure::Told).with_up(DVec3::Z)
+    }),
     ("town", "roofs from above", |r| roofs(r).seen_from_above()),
     ("room with a pose", "closed room", |r| room(r, &[], true)),
-    ("room with a pose", "room without a ceiling", |r| room(r, &[5], true)),
-    ("room with a pose", "room without a wall", |r| room(r, &[1], true)),
+    ("room with a pose", "room without a ceiling", |r| {
+        room(r, &[5], true)
+    }),
+    ("room with a pose", "room without a wall", |r| {
+        room(r, &[1], true)
+    }),
     ("room with a pose", "furnished room", |r| {
         let scene = room(r, &[], true);
         furnished(r, scene)
@@ -41,10 +56,18 @@ pub const RECIPES: &[Row] = &[
     ("room with a pose", "closed room with normals", |r| {
         let scene = room(r, &[], false);
         let normals = scene.points.iter().map(|&p| inward(p)).collect();
-        Scene { sure: Sure::Told, truth: Box::new(looks_in), ..scene.with_normals(normals) }
+        Scene {
+            sure: Sure::Told,
+            truth: Box::new(looks_in),
+            ..scene.with_normals(normals)
+        }
     }),
-    ("room without a pose", "closed room", |r| room(r, &[], false)),
-    ("room without a pose", "room without a ceiling", |r| room(r, &[5], false)),
+    ("room without a pose", "closed room", |r| {
+        room(r, &[], false)
+    }),
+    ("room without a pose", "room without a ceiling", |r| {
+        room(r, &[5], false)
+    }),
     ("room without a pose", "corner", |r| {
         let points = boxed(r, 3000, DVec3::ZERO, DVec3::ONE, &[1, 3, 5]);
         let lift = |_: DVec3, n: DVec3| Some(n.dot(DVec3::ONE) > 0.0);
@@ -55,10 +78,16 @@ pub const RECIPES: &[Row] = &[
     ("several setups", "thin wall from both sides", thin_wall),
     ("several setups", "block from four corners", block),
     ("depth frame", "wall and balls", |r| frame(r, 9.0, 1.0)),
-    ("depth frame", "wall and balls, backwards", |r| frame(r, 9.0, -1.0)),
+    ("depth frame", "wall and balls, backwards", |r| {
+        frame(r, 9.0, -1.0)
+    }),
     ("depth frame", "floor and balls", |r| frame(r, 0.6, 1.0)),
-    ("depth frame", "floor and balls, backwards", |r| frame(r, 0.6, -1.0)),
-    ("depth frame", "floor and balls with a viewpoint", |r| frame(r, 0.6, -1.0).seen_from(DVec3::ZERO)),
+    ("depth frame", "floor and balls, backwards", |r| {
+        frame(r, 0.6, -1.0)
+    }),
+    ("depth frame", "floor and balls with a viewpoint", |r| {
+        frame(r, 0.6, -1.0).seen_from(DVec3::ZERO)
+    }),
 ];
 
 fn up(_: DVec3, n: DVec3) -> Option<bool> {
@@ -74,7 +103,10 @@ fn terrain(r: &mut Rng, steep: f64, sure: Sure) -> Scene {
     let mut points = Vec::new();
     for j in 0..55 {
         for i in 0..55 {
-            let (x, y) = (f64::from(i) + 0.2 * r.normal(), f64::from(j) + 0.2 * r.normal());
+            let (x, y) = (
+                f64::from(i) + 0.2 * r.normal(),
+                f64::from(j) + 0.2 * r.normal(),
+            );
             points.push(DVec3::new(x, y, height(x, y) + 0.05 * r.normal()));
         }
     }
@@ -98,7 +130,9 @@ fn town_points(r: &mut Rng, n: usize, walls: f64) -> Vec<DVec3> {
     let mut points = Vec::new();
     for _ in 0..n {
         let (x, y) = (range(r, -6.0, 66.0), range(r, -6.0, 66.0));
-        let block = blocks.iter().find(|b| x > b[0] && x < b[2] && y > b[1] && y < b[3]);
+        let block = blocks
+            .iter()
+            .find(|b| x > b[0] && x < b[2] && y > b[1] && y < b[3]);
         points.push(DVec3::new(x, y, block.map_or(0.0, |b| b[4])));
     }
     for b in &blocks {
@@ -161,7 +195,14 @@ fn room(r: &mut Rng, without: &[usize], has_pose: bool) -> Scene {
 fn furnished(r: &mut Rng, mut scene: Scene) -> Scene {
     let lo = DVec3::new(range(r, 0.4, 0.9), range(r, 0.4, 0.8), 0.0);
     let hi = lo + DVec3::new(1.2, 0.8, 0.8);
-    let covered = move |p: &DVec3| p.z < 0.05 && p.cmpgt(lo - 1.0).all() && p.x > lo.x && p.x < hi.x && p.y > lo.y && p.y < hi.y;
+    let covered = move |p: &DVec3| {
+        p.z < 0.05
+            && p.cmpgt(lo - 1.0).all()
+            && p.x > lo.x
+            && p.x < hi.x
+            && p.y > lo.y
+            && p.y < hi.y
+    };
     scene.points.retain(|p| !covered(p));
     let table = boxed(r, 450, lo, hi, &[4]);
     scene.points.extend(noisy(r, 0.008, table));
@@ -193,7 +234,9 @@ fn street(r: &mut Rng) -> Scene {
     let mut points = rectangle(r, 1400, DVec3::ZERO, along, DVec3::Y * width);
     points.extend(rectangle(r, 1100, DVec3::ZERO, along, DVec3::Z * 6.0));
     points.extend(rectangle(r, 1100, DVec3::Y * width, along, DVec3::Z * 6.0));
-    let eyes: Vec<DVec3> = (0..3).map(|k| DVec3::new(4.0 + 8.0 * f64::from(k), width / 2.0, 1.7)).collect();
+    let eyes: Vec<DVec3> = (0..3)
+        .map(|k| DVec3::new(4.0 + 8.0 * f64::from(k), width / 2.0, 1.7))
+        .collect();
     let nearest = |p: &DVec3| (p.x / 8.0) as u32;
     let of = points.iter().map(|p| nearest(p).min(2)).collect();
     let truth = move |p: DVec3, n: DVec3| {
@@ -211,27 +254,49 @@ fn thin_wall(r: &mut Rng) -> Scene {
     points.extend(rectangle(r, 1800, DVec3::Y * thick, u, v));
     let of = (0..3600).map(|i| u32::from(i >= 1800)).collect();
     let eyes = vec![DVec3::new(3.0, -5.0, 1.5), DVec3::new(3.0, 5.0, 1.5)];
-    let truth = move |p: DVec3, n: DVec3| {
-        (n.y.abs() > 0.7).then_some((n.y > 0.0) == (p.y > thick / 2.0))
-    };
+    let truth =
+        move |p: DVec3, n: DVec3| (n.y.abs() > 0.7).then_some((n.y > 0.0) == (p.y > thick / 2.0));
     Scene::new(Sure::Told, noisy(r, 0.005, points), truth).seen_from_each(eyes, of)
 }
 
 /// A block on the ground, each of its sides seen from the corner that is nearest.
 fn block(r: &mut Rng) -> Scene {
-    let (lo, hi) = (DVec3::new(-2.0, -1.5, 0.0), DVec3::new(2.0, 1.5, range(r, 1.5, 3.0)));
+    let (lo, hi) = (
+        DVec3::new(-2.0, -1.5, 0.0),
+        DVec3::new(2.0, 1.5, range(r, 1.5, 3.0)),
+    );
     let mut points = boxed(r, 2200, lo, hi, &[4]);
-    let ground = rectangle(r, 2200, DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
-    points.extend(ground.into_iter().filter(|p| p.x.abs() > 2.0 || p.y.abs() > 1.5));
-    let corner = |k: u32| DVec3::new(if k & 1 == 1 { 6.0 } else { -6.0 }, if k & 2 == 2 { 6.0 } else { -6.0 }, 5.0);
-    let of = points.iter().map(|p| u32::from(p.x > 0.0) + 2 * u32::from(p.y > 0.0)).collect();
+    let ground = rectangle(
+        r,
+        2200,
+        DVec3::new(-5.0, -5.0, 0.0),
+        DVec3::X * 10.0,
+        DVec3::Y * 10.0,
+    );
+    points.extend(
+        ground
+            .into_iter()
+            .filter(|p| p.x.abs() > 2.0 || p.y.abs() > 1.5),
+    );
+    let corner = |k: u32| {
+        DVec3::new(
+            if k & 1 == 1 { 6.0 } else { -6.0 },
+            if k & 2 == 2 { 6.0 } else { -6.0 },
+            5.0,
+        )
+    };
+    let of = points
+        .iter()
+        .map(|p| u32::from(p.x > 0.0) + 2 * u32::from(p.y > 0.0))
+        .collect();
     let truth = move |p: DVec3, n: DVec3| {
         if p.z < 0.12 {
             return (n.z.abs() > 0.8).then_some(n.z > 0.0);
         }
         Some(n.dot(p - DVec3::Z * (hi.z / 2.0)) > 0.0)
     };
-    Scene::new(Sure::Told, noisy(r, 0.01, points), truth).seen_from_each((0..4).map(corner).collect(), of)
+    Scene::new(Sure::Told, noisy(r, 0.01, points), truth)
+        .seen_from_each((0..4).map(corner).collect(), of)
 }
 
 /// What a camera at the origin sees: a wall, a floor perhaps, balls.
@@ -246,7 +311,11 @@ fn frame(r: &mut Rng, floor: f64, forward: f64) -> Scene {
     let mut points = Vec::new();
     for v in 0..54 {
         for u in 0..68 {
-            let d = DVec3::new((f64::from(u) - 33.5) / 67.0, (f64::from(v) - 26.5) / 67.0, 1.0);
+            let d = DVec3::new(
+                (f64::from(u) - 33.5) / 67.0,
+                (f64::from(v) - 26.5) / 67.0,
+                1.0,
+            );
             let mut t = 2.6 / (1.0 - tilt * d.x);
             if d.y > 0.0 {
                 t = t.min(floor / d.y);
@@ -266,7 +335,12 @@ fn frame(r: &mut Rng, floor: f64, forward: f64) -> Scene {
 }
 
 /// For [`super::objects`]: points with their normals, from several eyes, each with the eye that saw it.
-pub fn scanned(r: &mut Rng, body: &[(DVec3, DVec3)], eyes: &[DVec3], noise: f64) -> (Vec<(DVec3, DVec3)>, Vec<u32>) {
+pub fn scanned(
+    r: &mut Rng,
+    body: &[(DVec3, DVec3)],
+    eyes: &[DVec3],
+    noise: f64,
+) -> (Vec<(DVec3, DVec3)>, Vec<u32>) {
     let mut all = Vec::new();
     let mut of = Vec::new();
     for (k, &eye) in (0u32..).zip(eyes) {

@@ -69,7 +69,9 @@ pub fn ball(rng: &mut Rng, n: usize, wanted: impl Fn(DVec3) -> bool) -> Vec<DVec
 
 /// Around z from 0 to 1, with a radius by height.
 pub fn turned(rng: &mut Rng, n: usize, radius: impl Fn(f64) -> f64) -> Vec<DVec3> {
-    let widest = (0..=100).map(|k| radius(k as f64 / 100.0)).fold(0.0, f64::max);
+    let widest = (0..=100)
+        .map(|k| radius(k as f64 / 100.0))
+        .fold(0.0, f64::max);
     let mut points = Vec::new();
     while points.len() < n {
         let t = rng.uniform();
