@@ -14,6 +14,7 @@ import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
 import { Session } from './session/session.js';
+import { ColumnChooser } from './session/column-chooser.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
 import { meaningOf } from './controls/targets.js';
@@ -34,6 +35,7 @@ export class App {
   #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
+  #columns = new ColumnChooser();
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
   #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
@@ -117,8 +119,15 @@ export class App {
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
+    this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
+  }
+
+  /** Lets a person say what the columns of a table are. */
+  #offerColumns(/** @type {Scan} */ { given, cloud }) {
+    const { file, columns } = cloud;
+    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#session.openFile(given, chosen));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -198,8 +207,9 @@ export class App {
 
 /** What a scan holds, and what of its file was no point. */
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
-  const { dropped = 0, faces = 0 } = cloud.file ?? {};
+  const { faces = 0 } = cloud.file ?? {};
+  const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
   const points = format.points(count) + (faces ? `, the corners of ${format.count(faces)} faces` : '');
-  const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
+  const rest = out ? `, ${format.count(out)} without a place left out` : '';
   return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
 }
