@@ -34,7 +34,7 @@ test('each format is read by its module, the same in every engine', { skip }, as
     const cloud = await engines[0].read(blob, { name });
     assert.equal(cloud.positions.length, 3 * points, name);
     assert.equal(cloud.file.format, format, name);
-    assert.deepEqual(Object.keys(cloud).filter((key) => key !== 'file').sort(), [...arrays].sort(), name);
+    assert.deepEqual(Object.keys(cloud).filter((key) => !['file', 'skipped', 'columns', 'up', 'seenFromAbove'].includes(key)).sort(), [...arrays].sort(), name);
     if (points > 50_000) continue; // to start a worker for each is what takes the time
     for (const engine of engines.slice(1)) assertSame(await engine.read(blob, { name }), cloud, name);
     assertSame(await engines[0].read(readFileSync(new URL(name, DATA))), cloud, `${name} by its content`);
@@ -86,7 +86,7 @@ test('what a file lacked is said', async (t) => {
   const ply = 'ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float t\n'
     + 'element face 1\nproperty list uchar int vertex_indices\nend_header\nnan 0 0 1\n1 2 3 inf\n3 0 1 0\n';
   const cloud = await engine.read(new TextEncoder().encode(ply));
-  assert.deepEqual(cloud.file, { format: 'ply', dropped: 1, replaced: 1, faces: 1 });
+  assert.deepEqual(cloud.file, { format: 'ply', dropped: 1, replaced: 1, faces: 1, notes: [] });
   assert.deepEqual([...cloud.positions, ...cloud.attributes.t], [1, 2, 3, 0]);
 });
 
