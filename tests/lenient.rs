@@ -351,13 +351,13 @@ fn fields_of_a_las_file_that_are_not_all_zero() {
 
 #[test]
 fn bits_of_a_las_files_colours() {
-    let brightest = |wide: u16, stray: Option<u16>| {
+    let brightest = |wide: u32, stray: Option<u16>| {
         let mut file = made::las(2, 240, (1, 2), false);
         let start = file.len() - 240 * 26;
         for i in 0..240 {
             for channel in 0..3 {
                 let at = start + 26 * i + 20 + 2 * channel;
-                let value = (i as u16 * 17 + channel as u16 * 5) % 256 * wide / 256;
+                let value = ((i as u32 * 17 + channel as u32 * 5) % 256 * wide / 256) as u16;
                 let value = if i == 7 && channel == 1 {
                     stray.unwrap_or(value)
                 } else {
@@ -391,9 +391,7 @@ fn messages_say_what_is_there() {
         (b"Kaydara FBX Binary  \x00", "an FBX scene"),
         (b"\x00\x01\x02\xfe\xff", "the bytes 00 01 02 fe ff"),
     ] {
-        let error = detect(bytes, Some("a.xyz"))
-            .or_else(|_| detect(bytes, None))
-            .expect_err("no scan");
+        let error = detect(bytes, None).expect_err("no scan");
         let text = error.to_string();
         assert!(text.contains(words) && !text.contains('\u{fffd}'), "{text}");
     }

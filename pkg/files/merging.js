@@ -2,6 +2,9 @@
 
 /** @import { FileCloud } from '../types.js' */
 
+/** A point of which nobody knows where it was seen from. */
+const UNKNOWN = 2 ** 32 - 1;
+
 /**
  * All points, one cloud after the other. What one of them lacks is white (colours), zero (normals) or 0 (attributes).
  * @param {any[]} clouds each a {@link FileCloud}
@@ -67,7 +70,10 @@ function viewpointsOf(clouds, counts) {
   const of = new Uint32Array(counts.reduce((sum, count) => sum + count, 0));
   let [point, place] = [0, 0];
   clouds.forEach(({ viewpoints }, i) => {
-    for (let j = 0; j < counts[i]; j++) of[point++] = place + (viewpoints.of?.[j] ?? 0);
+    for (let j = 0; j < counts[i]; j++) {
+      const station = viewpoints.of?.[j] ?? 0;
+      of[point++] = station === UNKNOWN ? UNKNOWN : place + station;
+    }
     place += viewpoints.positions.length / 3;
   });
   return { positions, of };

@@ -14,6 +14,7 @@ import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
 import { Session } from './session/session.js';
+import { ColumnChooser } from './session/column-chooser.js';
 import { Standing } from './controls/standing.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
@@ -39,6 +40,7 @@ export class App {
   #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
+  #columns = new ColumnChooser();
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
   #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
@@ -67,7 +69,7 @@ export class App {
     const first = files.find((file) => !/\.(mtl|png|jpe?g|webp)$/i.test(file.name)) ?? files[0];
     const beside = files.filter((file) => file !== first);
     if (beside.length > 0) announce(`One scan at a time: opening ${first.name}`);
-    return this.#session.openFile(first, beside);
+    return this.#session.openFile(first, { beside });
   }
 
   #listenToSession() {
@@ -126,8 +128,15 @@ export class App {
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
+    this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
+  }
+
+  /** Lets a person say what the columns of a table are. */
+  #offerColumns(/** @type {Scan} */ { given, cloud }) {
+    const { file, columns } = cloud;
+    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#session.openFile(given, { columns: chosen }));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -223,8 +232,9 @@ export class App {
 
 /** What a scan holds, and what of its file was no point. */
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
-  const { dropped = 0, faces = 0, sampled = 0 } = cloud.file ?? {};
+  const { faces = 0, sampled = 0 } = cloud.file ?? {};
+  const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
   const points = format.points(count) + (sampled ? `, taken from ${format.count(faces)} faces` : faces ? `, the corners of ${format.count(faces)} faces` : '');
-  const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
+  const rest = out ? `, ${format.count(out)} without a place left out` : '';
   return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
 }
