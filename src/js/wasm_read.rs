@@ -6,7 +6,8 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions, Reading, Stations, Summary, Want,
+    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
+    Reading, Stations, Summary, Want,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
@@ -252,6 +253,14 @@ fn summary(summary: &Summary) -> JsResult {
                 None => JsValue::UNDEFINED,
             },
         ),
+        ("stations", stations(&summary.stations)?),
+        (
+            "up",
+            optional(&summary.up, |up| {
+                up.map(JsValue::from).iter().collect::<Array>()
+            }),
+        ),
+        ("seenFromAbove", summary.seen_from_above.into()),
     ])
 }
 
