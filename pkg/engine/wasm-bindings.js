@@ -8,6 +8,8 @@ const MODULES = {
   las: () => import('../wasm/las/pointweave.js'),
   e57: () => import('../wasm/e57/pointweave.js'),
   packed: () => import('../wasm/packed/pointweave.js'),
+  pictures: () => import('../wasm/pictures/pointweave.js'),
+  exports: () => import('../wasm/exports/pointweave.js'),
 };
 
 /**

@@ -6,7 +6,7 @@ import { readFile, readerOf } from './reading.js';
 
 /** @import { FileCloud, Format, Progress } from '../types.js' */
 /** @import { Request } from '../engine/core.js' */
-/** @import { Reader, ReadingOptions } from './reading.js' */
+/** @import { Helpers, Reader, ReadingOptions } from './reading.js' */
 /** @import { Slices } from './byte-source.js' */
 
 /**
@@ -25,15 +25,16 @@ const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
  * @param {Slices} file
  * @param {ReadingOptions} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
+ * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
-export async function readScan(open, file, options, watch) {
-  if (options.format !== undefined || !(await isArchive(file))) return readOne(open, file, options, watch);
+export async function readScan(open, file, options, watch, helpers) {
+  if (options.format !== undefined || !(await isArchive(file))) return readOne(open, file, options, watch, helpers);
   const name = options.name ?? '';
   /** @param {number} [wanted] the part whose content is wanted @returns {Promise<{ name: string, content: Uint8Array }[]>} */
   const unpack = (wanted) => open('packed', async (ask) => ask({ call: 'unpack', args: [await wholeOf(file, watch.signal), name, wanted] }));
   const entries = await unpack();
-  if (entries.some((entry) => /^3D\/.*\.model$/i.test(entry.name))) return readOne(open, file, { ...options, format: '3mf' }, watch);
+  if (entries.some((entry) => /^3D\/.*\.model$/i.test(entry.name))) return readOne(open, file, { ...options, format: '3mf' }, watch, helpers);
   const chosen = scansOf(entries);
   if (chosen.length === 0) throw noScan(entries);
   const clouds = [];
@@ -41,15 +42,15 @@ export async function readScan(open, file, options, watch) {
     const { content } = (await unpack(at))[at];
     const inner = { ...options, name: entries[at].name || undefined };
     const part = { ...watch, onProgress: watch.onProgress && partOf(watch.onProgress, i, chosen.length) };
-    clouds.push(await readOne(open, slicesOf(content, true), inner, part));
+    clouds.push(await readOne(open, slicesOf(content, true), inner, part, helpers));
   }
   return merged(clouds, chosen.map((at) => entries[at].name));
 }
 
 /** @type {typeof readScan} */
-async function readOne(open, file, options, watch) {
+async function readOne(open, file, options, watch, helpers) {
   const reader = await readerOf(file, options.format);
-  return open(reader, (ask) => readFile(ask, file, options, watch));
+  return open(reader, (ask) => readFile(ask, file, options, watch, helpers));
 }
 
 /** @param {Slices} file */

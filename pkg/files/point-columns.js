@@ -35,6 +35,10 @@ import { kept, leftOutOf } from './left-out.js';
  * @property {Stations} [stations] where the points were seen from
  * @property {[number, number, number]} [up]
  * @property {boolean} seenFromAbove
+ * @property {import('../types.js').Unit} [unit]
+ * @property {import('../types.js').Crs} [crs]
+ * @property {number} sampled points that were taken from faces
+ * @property {string[]} missing files that the faces name and that were not there
  */
 
 /**
@@ -74,7 +78,7 @@ export class Columns {
    * @param {Summary} summary
    * @returns {FileCloud}
    */
-  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, leftOut, skipped, columns, notes, preview, stations, up, seenFromAbove, ...rest }) {
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, leftOut, skipped, columns, notes, preview, stations, up, seenFromAbove, unit, crs, sampled, missing, ...rest }) {
     let positions = this.#take('positions') ?? new Float32Array(0);
     const out = leftOutOf(/** @type {Float32Array | Float64Array} */ (positions), leftOut);
     /** @template {Values} T @param {T} values */
@@ -95,9 +99,12 @@ export class Columns {
       ...(viewpoints && { viewpoints }),
       ...(up && { up }),
       ...(seenFromAbove && { seenFromAbove }),
+      ...(unit && { unit }),
+      ...(crs && { crs }),
+      ...(sampled > 0 && { faces }),
       ...(columns.length > 0 && { columns }),
       skipped: why,
-      file: { format, dropped, replaced, faces, notes, ...(preview && { table: preview }) },
+      file: { format, dropped, replaced, faces, notes, ...(preview && { table: preview }), ...(sampled > 0 && { sampled }), ...(missing.length > 0 && { missing }) },
     });
   }
 

@@ -8,6 +8,7 @@
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
+mod crs;
 mod fields;
 mod laz;
 mod time;
@@ -17,6 +18,7 @@ use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{Columns, Precision, Table};
 use crate::base::error::Result;
+use crate::cloud::Crs;
 use ::las::point::Format;
 use ::las::raw;
 use fields::{ALWAYS, Extra, FIELDS};
@@ -28,6 +30,7 @@ const HEADER: usize = 375;
 /// Reads the points.
 #[derive(Default)]
 pub(super) struct Las {
+    crs: Option<Crs>,
     header: Option<Header>,
     laz: Option<Laz>,
     row: u64,
@@ -50,6 +53,7 @@ impl Parser for Las {
                 if (input.rest().len() as u64) < wanted && !input.last {
                     return Ok(Step::More);
                 }
+                self.crs = crs::read(&header, input.rest());
                 self.header.insert(header.with_extras(input))
             }
         };
@@ -94,6 +98,10 @@ impl Parser for Las {
             self.row += 1;
         }
         Ok(Step::Done)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        self.crs.clone()
     }
 
     fn notes(&self) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! What a caller can say of a file that does not say it itself.
 
+use super::FaceMode;
 use crate::base::error::{Error, Result};
 
 /// How a file is read; what is not given is told from its content.
@@ -16,6 +17,8 @@ pub struct ReadOptions {
     pub skip: u64,
     /// Points that stand for a missing measurement stay; see [`super::LeftOut`].
     pub keep_sentinels: bool,
+    /// What becomes of a file's faces.
+    pub faces: FaceMode,
 }
 
 impl ReadOptions {

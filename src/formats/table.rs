@@ -144,6 +144,8 @@ pub(super) struct Table {
     used: Vec<bool>,
     /// A normal was not zero.
     normals_used: bool,
+    /// All rows lie within 45° of the z axis from the origin.
+    pub(super) before_camera: bool,
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
@@ -156,7 +158,9 @@ pub(super) struct Table {
     /// Rows left out because the file says that they have no height, or no return.
     pub(super) no_data: u64,
     pub(super) no_returns: u64,
-    replaced: usize,
+    pub(super) replaced: usize,
+    /// Which rows were left out, counted with all others, where faces ask for it.
+    pub(super) gone: Option<Vec<u32>>,
 }
 
 impl Table {
@@ -173,10 +177,12 @@ impl Table {
             sentinels: Sentinels::default(),
             tally: Tally::default(),
             normals_used: false,
+            before_camera: true,
             colors_said: true,
             normals_said: true,
             stations: Stations::default(),
             dropped: 0,
+            gone: None,
             invalid: 0,
             no_data: 0,
             no_returns: 0,
@@ -184,14 +190,59 @@ impl Table {
         }
     }
 
+    /// A table of a cloud's points.
+    pub(super) fn of(cloud: RawCloud) -> Table {
+        let attributes = cloud.attributes.iter().enumerate();
+        let columns = Columns {
+            normal: cloud.normals.as_ref().map(|_| [3, 4, 5]),
+            color: cloud.colors.as_ref().map(|_| [6, 7, 8]),
+            scalars: attributes.map(|(i, a)| (9 + i, a.name.clone())).collect(),
+            colors: ColorRange::Bytes,
+            precision: match cloud.positions {
+                Positions::F32(_) => Precision::Single,
+                Positions::F64(_) => Precision::Double,
+            },
+            ..Columns::xyz()
+        };
+        let rows = cloud.points() as u64;
+        let mut table = Table::new(columns, Some(rows));
+        table.rows = rows;
+        table.normals_used = true;
+        table.block = Block {
+            positions: cloud.positions,
+            normals: cloud.normals,
+            colors: cloud.colors.map(ColorValues::Bytes),
+            attributes: cloud.attributes,
+        };
+        table
+    }
+
+    /// Rows so far, with those that were left out.
+    pub(super) fn next_row(&self) -> u64 {
+        self.rows + self.dropped as u64
+    }
+
+    /// The coordinates of a row, where none was left out and no block was taken.
+    pub(super) fn position(&self, row: u32) -> Option<[f64; 3]> {
+        let row = row as usize;
+        let is_there = self.dropped == 0 && row < self.block.positions.len() / 3;
+        is_there.then(|| [0, 1, 2].map(|axis| self.block.positions.get(3 * row + axis)))
+    }
+
     /// Adds a row; one with a coordinate that is not finite is counted and left out.
     pub(super) fn push(&mut self, row: &[f64]) {
         let position = self.columns.position.map(|column| row[column]);
         if position.iter().any(|x| !x.is_finite()) {
+            let row = self.next_row();
+            if let Some(gone) = &mut self.gone {
+                gone.push(row as u32);
+            }
             self.dropped += 1;
             return;
         }
         self.rows += 1;
+        let [x, y, z] = position;
+        self.before_camera &= x.abs() < z && y.abs() < z;
         match &mut self.block.positions {
             Positions::F32(values) => values.extend(position.map(|x| x as f32)),
             Positions::F64(values) => values.extend(position),
@@ -295,11 +346,6 @@ impl Table {
             ("no-return", self.no_returns + later[1]),
         ];
         counts.into_iter().filter(|(_, count)| *count > 0).collect()
-    }
-
-    /// Values of colours, normals and attributes that were not finite and are now 0.
-    pub(super) fn replaced(&self) -> usize {
-        self.replaced
     }
 
     /// The arrays of all rows, where no block was taken.

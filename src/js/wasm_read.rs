@@ -6,8 +6,8 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, Format, LeftOut, Positions, Preview, ReadOptions, Reading, Stations,
-    Summary,
+    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
+    Reading, Stations, Summary, Want,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
@@ -19,7 +19,7 @@ thread_local! {
     static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
 }
 
-/// Begins a file of `{ name, format, size, columns, delimiter, decimal, skip, sentinels }`, all but the size optional; one that
+/// Begins a file of `{ name, format, size, columns, delimiter, decimal, skip, sentinels, faces }`, all but the size optional; one that
 /// was being read is given up.
 #[wasm_bindgen(js_name = readStart)]
 pub fn read_start(options: JsValue) -> Result<(), JsValue> {
@@ -52,6 +52,10 @@ fn read_options(options: &JsValue) -> Result<ReadOptions, JsValue> {
         decimal: mark("decimal")?,
         skip: get("skip")?.as_f64().unwrap_or(0.0) as u64,
         keep_sentinels: get("sentinels")?.as_string().as_deref() == Some("keep"),
+        faces: match get("faces")?.as_string().as_deref() {
+            Some("vertices") => FaceMode::Vertices,
+            _ => FaceMode::Sample,
+        },
     })
 }
 
@@ -86,7 +90,8 @@ pub fn read_push(bytes: &[u8]) -> JsResult {
     })
 }
 
-/// After the last bytes: `{ block, summary }`, the latter when all is read.
+/// After the last bytes: `{ block, summary, want }`: the second when all is read, the last where something else is needed for
+/// that: `{ file }` by its name, which [`read_file`] gives, or the pixels of a `{ picture }`'s bytes, which [`read_picture`] gives.
 #[wasm_bindgen(js_name = readEnd)]
 pub fn read_end() -> JsResult {
     let answer = with(|reading| {
@@ -94,12 +99,41 @@ pub fn read_end() -> JsResult {
             true => summary(&reading.summary())?,
             false => JsValue::UNDEFINED,
         };
-        object([("block", block(reading)?), ("summary", summary)])
+        let want = match reading.want() {
+            Some(Want::File(name)) => object([("file", name.into())])?,
+            Some(Want::Picture(bytes)) => {
+                object([("picture", Uint8Array::from(&bytes[..]).into())])?
+            }
+            None => JsValue::UNDEFINED,
+        };
+        object([
+            ("block", block(reading)?),
+            ("summary", summary),
+            ("want", want),
+        ])
     })?;
     if Reflect::has(&answer, &"summary".into())? {
         READING.set(None);
     }
     Ok(answer)
+}
+
+/// The content of the file that is wanted; undefined where there is none.
+#[wasm_bindgen(js_name = readFile)]
+pub fn read_file(content: Option<Vec<u8>>) -> JsResult {
+    with(|reading| {
+        reading.give_file(content.as_deref());
+        Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// The pixels of the picture that is wanted; undefined where it is of no kind that is read.
+#[wasm_bindgen(js_name = readPicture)]
+pub fn read_picture(pixels: Option<Vec<u8>>, width: usize, height: usize) -> JsResult {
+    with(|reading| {
+        reading.give_picture(pixels.and_then(|pixels| Picture::new(width, height, pixels)));
+        Ok(JsValue::UNDEFINED)
+    })
 }
 
 /// Does something with the file that is being read; an error ends it.
@@ -183,6 +217,30 @@ fn summary(summary: &Summary) -> JsResult {
         ("colorScale", verdict.color_scale.into()),
         ("hasColors", verdict.has_colors.into()),
         ("hasNormals", verdict.has_normals.into()),
+        ("stations", stations(&summary.stations)?),
+        (
+            "up",
+            optional(&summary.up, |up| {
+                up.map(JsValue::from).iter().collect::<Array>()
+            }),
+        ),
+        ("seenFromAbove", summary.seen_from_above.into()),
+        (
+            "unit",
+            optional(&summary.unit, |unit| JsValue::from(unit.name())),
+        ),
+        ("crs", crs(summary)?),
+        ("sampled", (summary.sampling.points as f64).into()),
+        (
+            "missing",
+            summary
+                .sampling
+                .missing
+                .iter()
+                .map(JsValue::from)
+                .collect::<Array>()
+                .into(),
+        ),
         ("attributes", strings(&verdict.attributes)),
         ("leftOut", left_out(&verdict.left_out)?),
         ("skipped", skipped.into()),
@@ -195,14 +253,6 @@ fn summary(summary: &Summary) -> JsResult {
                 None => JsValue::UNDEFINED,
             },
         ),
-        ("stations", stations(&summary.stations)?),
-        (
-            "up",
-            optional(&summary.up, |up| {
-                up.map(JsValue::from).iter().collect::<Array>()
-            }),
-        ),
-        ("seenFromAbove", summary.seen_from_above.into()),
     ])
 }
 
@@ -251,4 +301,15 @@ fn stations(stations: &Stations) -> JsResult {
         ("starts", Float64Array::from(&starts[..]).into()),
         ("of", Uint32Array::from(&of[..]).into()),
     ])
+}
+
+/// Only LAS has one.
+#[cfg(feature = "las")]
+fn crs(summary: &Summary) -> JsResult {
+    crate::js::crs::crs_to_js(&summary.crs)
+}
+
+#[cfg(not(feature = "las"))]
+fn crs(_: &Summary) -> JsResult {
+    Ok(JsValue::UNDEFINED)
 }

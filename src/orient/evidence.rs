@@ -41,7 +41,7 @@ pub(crate) const SOME: f32 = 0.1;
 const BODY: f64 = 0.25;
 /// Weights of sources against an edge of full agreement. Up must not cut a body in two.
 const SEEN: f32 = 1.0;
-const UPWARD: f32 = 0.2;
+const UPWARD: f32 = 1.0;
 
 impl Evidence {
     /// Of each of `count` reduced points, by the input points that have most of their share in it; `shares` in the order of

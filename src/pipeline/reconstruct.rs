@@ -214,7 +214,8 @@ fn surface(
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
     let (low, high) = world_box(&input, &reduced.cloud);
-    let mut doubts = report::doubts_of_shape(low, high, report.distance.rms);
+    let mut doubts = report.doubts.clone();
+    doubts.extend(report::doubts_of_shape(low, high, report.distance.rms));
     doubts.extend(report::doubts(&signs.account));
     let surface_report = SurfaceReport {
         reduce: ReduceReport {

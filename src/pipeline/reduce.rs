@@ -11,6 +11,7 @@ use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::results::ReducedCloud;
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
+use crate::report;
 use crate::report::{DistanceStats, ReduceReport};
 use std::borrow::Cow;
 
@@ -102,6 +103,7 @@ pub(crate) fn reduce_report(
             .filter(|reason| !reason.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
+        doubts: report::doubts_of_faces(reduced.cloud.faces),
         ..Default::default()
     }
 }

@@ -58,6 +58,20 @@ pub(crate) fn doubts_of_shape(low: [f64; 3], high: [f64; 3], rms: f64) -> Vec<Do
     Vec::new()
 }
 
+/// What is to be said of points that were taken from `faces`, where they were.
+pub(crate) fn doubts_of_faces(faces: u64) -> Vec<Doubt> {
+    if faces == 0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "sampled-from-faces",
+        message: format!(
+            "The file is a mesh: its points were taken from {faces} faces, evenly over their area."
+        ),
+        share: None,
+    }]
+}
+
 /// What may be wrong with the sides.
 pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
     let mut doubts = Vec::new();

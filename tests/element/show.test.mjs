@@ -66,8 +66,8 @@ test('progress goes from the file to the result and never back; the points come 
 
 test('what may be wrong is the title of the picture, and spoken; orientation and flip turn the mesh', async () => {
   const hills = Array.from({ length: 1600 }, (_, i) => [i % 40, Math.floor(i / 40)].map((k) => k / 10 - 2));
-  site.put('/wall.xyz', Buffer.from(hills.map(([x, y]) => `${0.3 * Math.sin(2 * x) * Math.cos(1.7 * y)} ${x} ${y}`).join('\n')));
-  const shown = await site.open('<point-weave src="/wall.xyz" alt="A wall" up="z"></point-weave>');
+  site.put('/hills.xyz', Buffer.from(hills.map(([x, y]) => `${x} ${y} ${0.3 * Math.sin(2 * x) * Math.cos(1.7 * y)}`).join('\n')));
+  const shown = await site.open('<point-weave src="/hills.xyz" alt="Hills"></point-weave>');
   await shown.loaded();
   const state = () => shown.element().evaluate(({ report, shadowRoot }) => ({
     doubts: report.doubts.map(({ code, message }) => [code, message]),

@@ -94,11 +94,11 @@ test('two balls: flipped, flipped back, one of them alone', { timeout: PATIENCE 
 });
 
 test('what nothing tells is said to be a guess, until the person tells it', { timeout: PATIENCE }, async (t) => {
-  const wall = Array.from({ length: 1600 }, (_, i) => {
-    const [y, z] = [i % 40, Math.floor(i / 40)].map((k) => k / 10 - 2);
-    return [0.3 * Math.sin(2 * y) * Math.cos(1.7 * z), y, z];
+  const hills = Array.from({ length: 1600 }, (_, i) => {
+    const [x, y] = [i % 40, Math.floor(i / 40)].map((k) => k / 10 - 2);
+    return [x, y, 0.3 * Math.sin(2 * x) * Math.cos(1.7 * y)];
   });
-  const site = await openScan(t, 'wall.xyz', toXyz(wall));
+  const site = await openScan(t, 'hills.xyz', toXyz(hills));
   const { page } = site;
   assert.match(await page.innerText('#doubt'), /^Which side is out is a guess/);
   assert.equal(await words(site), 'What tells the outer side: nothing, so this is a guess.');

@@ -70,8 +70,15 @@ impl Scalar {
 
 /// A property: one value, or a count and as many values.
 pub(super) enum Property {
-    One { name: String, scalar: Scalar },
-    List { count: Scalar, item: Scalar },
+    One {
+        name: String,
+        scalar: Scalar,
+    },
+    List {
+        name: String,
+        count: Scalar,
+        item: Scalar,
+    },
 }
 
 pub(super) struct Element {
@@ -84,7 +91,7 @@ pub(super) struct Element {
 
 impl Element {
     /// Names of the properties that are one value, in order; the second of a name gets a number.
-    fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         let name = |property: &Property| match property {
             Property::One { name, .. } => Some(name.clone()),
             Property::List { .. } => None,
@@ -179,6 +186,8 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Names of the pictures that textures show.
+    pub(super) textures: Vec<String>,
     /// Its last line.
     line: u64,
 }
@@ -188,6 +197,7 @@ pub(super) struct Header {
 pub(super) struct HeaderLines {
     encoding: Option<Encoding>,
     elements: Vec<Element>,
+    textures: Vec<String>,
     /// How the first line ended.
     ending: Option<Ending>,
     /// Lines end with a line feed and a carriage return, in this order: the second is at the start of the next line.
@@ -223,6 +233,10 @@ impl HeaderLines {
             let text = String::from_utf8_lossy(line);
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words[..] {
+                ["comment", "TextureFile", _, ..] => {
+                    let (_, name) = text.split_once("TextureFile").unwrap_or_default();
+                    self.textures.push(name.trim().into());
+                }
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, version] => {
                     self.encoding = Some(parse_encoding(name, version, input, line)?)
@@ -256,10 +270,10 @@ impl HeaderLines {
                     if self.ending == Some(Ending::CarriageReturn) && input.ending == Ending::Both {
                         input.put_back_line_feed(whole);
                     }
-                    let elements = std::mem::take(&mut self.elements);
                     return Ok(Some(Header {
                         encoding,
-                        elements,
+                        elements: std::mem::take(&mut self.elements),
+                        textures: std::mem::take(&mut self.textures),
                         line: input.place.line,
                     }));
                 }
@@ -324,7 +338,8 @@ fn parse_property(words: &[&str], input: &Input, line: &[u8]) -> Result<Property
         })
     };
     match *words {
-        [_, "list", count, item, _] => Ok(Property::List {
+        [_, "list", count, item, name] => Ok(Property::List {
+            name: name.into(),
             count: scalar(count)?,
             item: scalar(item)?,
         }),
