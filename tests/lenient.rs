@@ -395,9 +395,9 @@ fn messages_say_what_is_there() {
         let text = error.to_string();
         assert!(text.contains(words) && !text.contains('\u{fffd}'), "{text}");
     }
-    let binary = [HEADER.as_bytes(), b"\xff\xfe\xfd\xfc\n"].concat();
+    let binary = [HEADER.as_bytes(), b"\xff\xfe\x01\x02\n"].concat();
     let text = read(&binary, Format::Ply).expect_err("bytes").to_string();
-    assert!(text.contains("the bytes ff fe fd fc"), "{text}");
+    assert!(text.contains("the bytes ff fe 01 02"), "{text}");
     let mut e57 = made::e57(&[(Kept::Double, 20)]);
     for (at, words) in [
         (24, "a header and a directory"),
