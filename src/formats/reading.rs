@@ -257,7 +257,9 @@ impl Reading {
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, |table| table.replaced),
             faces: parser.map_or(0, |parser| parser.faces()),
-            skipped: table.map_or(Vec::new(), |table| [table.skipped([0; 2]), self.sampled.skipped()].concat()),
+            skipped: table.map_or(Vec::new(), |table| {
+                [table.skipped([0; 2]), self.sampled.skipped()].concat()
+            }),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
             preview: parser.and_then(|parser| parser.preview()),

@@ -85,9 +85,7 @@ impl Build {
             | Self::E57
             | Self::Pictures
             | Self::Exports
-            | Self::Packed => {
-                strings(&["-Ctarget-feature=+simd128"])
-            }
+            | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
                     "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
