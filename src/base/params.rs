@@ -216,7 +216,7 @@ pub enum Boundary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Propagation {
-    /// Strongest agreements first over the whole graph, then flips that lower the energy.
+    /// The signs of least energy over the whole graph, and every part by what is known of its outer side.
     Global,
     /// Algorithm 1: an advancing front with belief propagation on local graphs.
     Paper,
