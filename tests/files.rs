@@ -214,7 +214,7 @@ const FILES: [(&str, Outcome); 125] = [
     ("scans/cad_scans/Separator_1_filtered.ply", Cloud(6_046)),
     ("meshes/duck.dae", Fails("unknown-format", None)),
     // Hoppe's format of 1992: rows start with the letter p.
-    ("scans/distcap.pts", Fails("bad-file", Some(3))),
+    ("scans/distcap.pts", Cloud(12_745)),
     (
         "scans/pcl/milk_cartoon_all_small_clorox.pcd",
         Dropped(241_407, 65_793),

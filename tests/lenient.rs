@@ -5,7 +5,7 @@
 mod made;
 
 use made::Kept;
-use pointweave::formats::{Format, Positions, RawCloud, Reading, detect, read};
+use pointweave::formats::{FaceMode, Format, Positions, RawCloud, Reading, detect, read};
 
 fn values(cloud: &RawCloud) -> Vec<f64> {
     match &cloud.positions {
@@ -17,7 +17,7 @@ fn values(cloud: &RawCloud) -> Vec<f64> {
 /// Reads a file whole and byte by byte: the same.
 fn both(bytes: &[u8], format: Format) -> RawCloud {
     let whole = read(bytes, format).unwrap_or_else(|error| panic!("{error}"));
-    let mut reading = Reading::new(None, None, bytes.len() as u64);
+    let mut reading = Reading::new(None, None, bytes.len() as u64).with_faces(FaceMode::Vertices);
     for byte in bytes {
         reading
             .push(&[*byte])

@@ -163,7 +163,7 @@ fn read_line(
     values: &mut Vec<f64>,
 ) -> Result<Line> {
     let line = line.trim_ascii_end();
-    if line.is_empty() || plan::is_comment(line) {
+    if line.is_empty() || plan::is_comment(line) || plan.is_no_point(line) {
         return Ok(Line::Nothing);
     }
     if plan.dialect.split(line).nth(1).is_none()
