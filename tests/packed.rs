@@ -16,11 +16,20 @@ fn values(cloud: &RawCloud) -> Vec<f64> {
     }
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Reads a file whole and in small slices: the same count.
 fn both(bytes: &[u8], format: Format) -> RawCloud {
     let whole = read(bytes, format).unwrap_or_else(|error| panic!("{error}"));
-    let mut reading =
-        Reading::new(Some(format), None, bytes.len() as u64).with_faces(FaceMode::Vertices);
+    let mut reading = Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for slice in bytes.chunks(7) {
         reading
             .push(slice)
