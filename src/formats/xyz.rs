@@ -112,10 +112,10 @@ impl Xyz {
 
 impl Parser for Xyz {
     fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
-        if input.place.byte == 0 {
-            if input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]) {
-                return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
-            }
+        if input.place.byte == 0
+            && (input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]))
+        {
+            return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
         }
         while let Some(line) = input.line()? {
             let number = input.place.line;

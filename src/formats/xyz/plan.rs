@@ -282,7 +282,7 @@ fn letter_of(rows: &[&Numbered], dialect: Dialect) -> Option<u8> {
         Some([letter]) if letter.is_ascii_alphabetic() => Some(*letter),
         _ => None,
     };
-    let letter = rows.last().and_then(|row| first(row))?;
+    let letter = rows.last().and_then(&first)?;
     let same = rows.iter().filter(|row| first(row) == Some(letter)).count();
     (10 * same >= 9 * rows.len()).then_some(letter)
 }
