@@ -5,7 +5,9 @@
 mod made;
 
 use made::Kept;
-use pointweave::formats::{Format, Positions, RawCloud, Reading, detect, read};
+use pointweave::formats::{
+    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, detect, read,
+};
 
 fn values(cloud: &RawCloud) -> Vec<f64> {
     match &cloud.positions {
@@ -14,10 +16,20 @@ fn values(cloud: &RawCloud) -> Vec<f64> {
     }
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Reads a file whole and byte by byte: the same.
 fn both(bytes: &[u8], format: Format) -> RawCloud {
     let whole = read(bytes, format).unwrap_or_else(|error| panic!("{error}"));
-    let mut reading = Reading::new(None, None, bytes.len() as u64);
+    let mut reading = Reading::new(None, None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for byte in bytes {
         reading
             .push(&[*byte])
@@ -395,9 +407,9 @@ fn messages_say_what_is_there() {
         let text = error.to_string();
         assert!(text.contains(words) && !text.contains('\u{fffd}'), "{text}");
     }
-    let binary = [HEADER.as_bytes(), b"\xff\xfe\xfd\xfc\n"].concat();
+    let binary = [HEADER.as_bytes(), b"\xff\xfe\x01\x02\n"].concat();
     let text = read(&binary, Format::Ply).expect_err("bytes").to_string();
-    assert!(text.contains("the bytes ff fe fd fc"), "{text}");
+    assert!(text.contains("the bytes ff fe 01 02"), "{text}");
     let mut e57 = made::e57(&[(Kept::Double, 20)]);
     for (at, words) in [
         (24, "a header and a directory"),

@@ -11,7 +11,7 @@ import { PointweaveError } from '../engine/errors.js';
 
 /**
  * What a caller says of a file.
- * @typedef {{ name?: string, format?: Format, columns?: string[], delimiter?: string, decimal?: string, skip?: number, sentinels?: 'drop' | 'keep' }} ReadingOptions
+ * @typedef {{ name?: string, format?: Format, columns?: string[], delimiter?: string, decimal?: string, skip?: number, sentinels?: 'drop' | 'keep', faces?: 'sample' | 'vertices' }} ReadingOptions
  */
 
 /** How the files start whose reader is a build of its own, and the formats' names. @type {[string, Format, Reader][]} */

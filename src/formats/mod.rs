@@ -188,9 +188,12 @@ impl Format {
     /// Which way is up, where the format says it.
     pub fn up(self) -> Option<[f64; 3]> {
         match self {
-            Format::Las | Format::E57 | Format::ThreeMf | Format::Grid | Format::Tiff => {
-                Some([0.0, 0.0, 1.0])
-            }
+            Format::Las
+            | Format::E57
+            | Format::Ptx
+            | Format::Grid
+            | Format::Tiff
+            | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
             Format::Glb => Some([0.0, 1.0, 0.0]),
             _ => None,
         }

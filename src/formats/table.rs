@@ -149,6 +149,7 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    /// Where the rows were seen from.
     pub(super) stations: Stations,
     /// Rows left out because a coordinate is not finite.
     pub(super) dropped: usize,

@@ -253,14 +253,6 @@ fn summary(summary: &Summary) -> JsResult {
                 None => JsValue::UNDEFINED,
             },
         ),
-        ("stations", stations(&summary.stations)?),
-        (
-            "up",
-            optional(&summary.up, |up| {
-                up.map(JsValue::from).iter().collect::<Array>()
-            }),
-        ),
-        ("seenFromAbove", summary.seen_from_above.into()),
     ])
 }
 

@@ -61,13 +61,19 @@ fn check_cloud(cloud: &RawCloud) {
     assert!(points == 0 || cloud.to_cloud().is_ok());
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Points and rows left out.
 fn read_slices(bytes: &[u8], size: usize, format: Format) -> pointweave::Result<(u64, usize)> {
-    let options = ReadOptions {
-        faces: FaceMode::Vertices,
-        ..ReadOptions::default()
-    };
-    let mut reading = Reading::new(Some(format), None, bytes.len() as u64).with_options(options)?;
+    let mut reading = Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for slice in bytes.chunks(size) {
         reading.push(slice)?;
         reading.take_block();

@@ -115,7 +115,7 @@ test('the element is not larger than its budget', async (t) => {
 });
 
 /** Most bytes of each part, gzipped. */
-const BUDGET = { single: 305_000, threads: 340_000, files: 130_000, las: 80_000, e57: 130_000, packed: 130_000, pictures: 180_000, exports: 180_000, glue: 15_000 };
+const BUDGET = { single: 305_000, threads: 340_000, files: 130_000, las: 95_000, e57: 140_000, packed: 200_000, pictures: 180_000, exports: 180_000, glue: 15_000 };
 
 test('nothing is larger than its budget', async () => {
   const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;
