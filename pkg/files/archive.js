@@ -7,7 +7,7 @@ import { readFile, readerOf } from './reading.js';
 
 /** @import { FileCloud, Format, Progress } from '../types.js' */
 /** @import { Request } from '../engine/core.js' */
-/** @import { Helpers, Reader, ReadingOptions } from './reading.js' */
+/** @import { Reader, ReadingOptions } from './reading.js' */
 /** @import { Slices } from './byte-source.js' */
 
 /**
@@ -26,7 +26,6 @@ const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
  * @param {Slices} file
  * @param {ReadingOptions & { beside?: import('../types.js').Beside }} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
- * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
 export async function readScan(open, file, { beside, ...options }, watch) {
