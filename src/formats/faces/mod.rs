@@ -16,7 +16,9 @@ use super::table::{Columns, Table};
 use normals::CornerNormals;
 use paint::Painter;
 pub use paint::Picture;
-pub(super) use paint::{Look, Texture, Wrap, srgb};
+#[cfg(feature = "packed")]
+pub(super) use paint::srgb;
+pub(super) use paint::{Look, Texture, Wrap};
 
 /// Fewest and most points that a mesh becomes, and points a triangle between the two.
 const FEWEST: usize = 100_000;
