@@ -6,8 +6,8 @@ import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { EXPORTED, checkCoreOptions, checkModel, checkOptions } from './options.js';
-import { finder } from '../files/beside.js';
-import { readFile, readerError, readerOf } from '../files/reading.js';
+import { readScan } from '../files/archive.js';
+import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
 import { byteSourceOf } from '../files/byte-source.js';
 
@@ -90,20 +90,17 @@ async function read({ compile, loadBindings }, wasmUrl, data, options) {
   const { own, transfer, signal = NEVER, onProgress } = checkOptions('read', options);
   signal.throwIfAborted();
   const file = byteSourceOf(data, transfer);
-  const build = await readerOf(file, own.format);
-  const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
-  const host = await inProcessHost(bindings, { build, module });
-  const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
-  const decode = async (/** @type {Uint8Array} */ bytes) => {
-    const [module, bindings] = await Promise.all([compile('pictures', wasmUrl), loadBindings('pictures')]);
-    const pictures = await inProcessHost(bindings, { build: 'pictures', module });
-    return pictures.run({ call: 'decodePicture', args: [bytes] }, { signal });
+  /** @type {import('../files/archive.js').Open} */
+  const open = async (build, job) => {
+    const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
+    const host = await inProcessHost(bindings, { build, module });
+    try {
+      return await keepAlive(job((request) => host.run(request, { signal })));
+    } catch (error) {
+      throw readerError(error, build);
+    }
   };
-  try {
-    return await keepAlive(readFile((request) => host.run(request, { signal }), file, given, { signal, onProgress }, { find: finder(beside), decode }));
-  } catch (error) {
-    throw readerError(error, build);
-  }
+  return readScan(open, file, { name: data.name, ...own }, { signal, onProgress });
 }
 
 const NEVER = new AbortController().signal;

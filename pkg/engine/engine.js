@@ -5,13 +5,13 @@
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
-import { finder } from '../files/beside.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { EXPORTED, checkEngineOptions, checkModel, checkOptions } from './options.js';
-import { readFile, readerError, readerOf } from '../files/reading.js';
+import { readScan } from '../files/archive.js';
+import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
 import { byteSourceOf } from '../files/byte-source.js';
 
@@ -111,14 +111,13 @@ export class Engine {
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
     const file = byteSourceOf(data, transfer);
-    const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
+    const given = { name: data.name, ...own };
     return this.#queued(watch, async (signal) => {
-      const reader = await readerOf(file, own.format);
-      const decode = (/** @type {Uint8Array} */ bytes) => this.#withModule('pictures', signal, (ask) => ask({ call: 'decodePicture', args: [bytes] }));
-      const helpers = { find: finder(beside), decode };
-      return this.#withModule(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }, helpers)).catch((error) => {
-        throw readerError(error, reader);
+      /** @type {import('../files/archive.js').Open} */
+      const open = (build, job) => this.#withModule(build, signal, job).catch((error) => {
+        throw readerError(error, build);
       });
+      return readScan(open, file, given, { signal, onProgress: watch.onProgress });
     });
   }
 

@@ -41,6 +41,7 @@ function wasmFile(build, given) {
     files: () => new URL('../wasm/files/pointweave_bg.wasm', import.meta.url),
     las: () => new URL('../wasm/las/pointweave_bg.wasm', import.meta.url),
     e57: () => new URL('../wasm/e57/pointweave_bg.wasm', import.meta.url),
+    packed: () => new URL('../wasm/packed/pointweave_bg.wasm', import.meta.url),
     pictures: () => new URL('../wasm/pictures/pointweave_bg.wasm', import.meta.url),
     exports: () => new URL('../wasm/exports/pointweave_bg.wasm', import.meta.url),
   }[build]();

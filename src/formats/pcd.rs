@@ -9,15 +9,16 @@
 //! Why not a crate: `pcd-rs` reads through memory maps or whole records with one allocation each, and gives no place
 //! for an error; `pcd_rs` has no wasm32 build without a file system.
 
+mod fields;
 mod picture;
 
-use super::colors::ColorRange;
 use super::input::Input;
 use super::lzf;
 use super::reading::{Parser, Step};
-use super::table::{Columns, Precision, Table};
+use super::table::{Columns, Table};
 use super::text::number;
 use crate::base::error::Result;
+use fields::{Encoding, Field, Kind, columns, packed_color, unpacked, value};
 use picture::Picture;
 
 /// Whether the content starts as a PCD file does: comments, then `VERSION` or `FIELDS`.
@@ -58,28 +59,6 @@ impl Parser for Pcd {
             None => Ok(Step::Done),
         }
     }
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Encoding {
-    Ascii,
-    Binary,
-    Compressed,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Signed,
-    Unsigned,
-    Float,
-}
-
-/// A field: `count` values of `size` bytes.
-struct Field {
-    name: String,
-    kind: Kind,
-    size: usize,
-    count: usize,
 }
 
 /// The header's entries.
@@ -232,46 +211,6 @@ fn viewpoint(values: &[&str]) -> Option<[f64; 3]> {
     let position = [place(0)?, place(1)?, place(2)?];
     let is_said = position != [0.0; 3] && position.iter().all(|x| x.is_finite());
     is_said.then_some(position)
-}
-
-/// The columns of the rows that [`Body::push`] makes: a value for each field, then red, green, blue where one packs them.
-fn columns(fields: &[Field], encoding: Encoding) -> Option<Columns> {
-    // Fields with several values and padding have names of no meaning, and no attribute is made of them.
-    let name = |(i, field): (usize, &Field)| {
-        if field.count == 1 && field.name != "_" {
-            field.name.clone()
-        } else {
-            format!("\0{i}")
-        }
-    };
-    let mut names: Vec<String> = fields.iter().enumerate().map(name).collect();
-    let packed = packed_color(fields);
-    if let Some(packed) = packed {
-        names[packed] = "\0".into();
-        names.extend(["red", "green", "blue"].map(String::from));
-    }
-    let mut columns = Columns::from_names(&names)?;
-    columns.scalars.retain(|(_, name)| !name.starts_with('\0'));
-    if packed.is_some() {
-        columns.colors = ColorRange::Bytes;
-    }
-    let is_single =
-        |&i: &usize| fields[i].size < 4 || (fields[i].size == 4 && fields[i].kind == Kind::Float);
-    // Text may have more digits than the type that it names.
-    if encoding != Encoding::Ascii && columns.position.iter().all(is_single) {
-        columns.precision = Precision::Single;
-    }
-    Some(columns)
-}
-
-/// The field that packs a colour into four bytes.
-fn packed_color(fields: &[Field]) -> Option<usize> {
-    let packs = |field: &Field| {
-        ["rgb", "rgba"].contains(&field.name.to_lowercase().as_str())
-            && field.size >= 4
-            && field.count == 1
-    };
-    fields.iter().position(packs)
 }
 
 /// The rows, and how far they have been read.
@@ -470,32 +409,5 @@ impl Body {
         }
         table.push(&self.values);
         self.row += 1;
-    }
-}
-
-/// The colour that a value packs: its integer, or, of a float, its `bits`. Some programs write the integer as a float's value: it
-/// is whole and not tiny, as the bits of no colour are without transparency or with all of it.
-fn unpacked(field: &Field, value: f64, bits: u32) -> u32 {
-    let is_integer = (1.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;
-    if field.kind == Kind::Float && !is_integer {
-        bits
-    } else {
-        value as i64 as u32
-    }
-}
-
-/// A field's first value.
-fn value(field: &Field, bytes: &[u8]) -> f64 {
-    let mut raw = [0u8; 8];
-    raw[..field.size].copy_from_slice(&bytes[..field.size]);
-    let [a, b, c, d, ..] = raw;
-    match (field.kind, field.size) {
-        (Kind::Float, 4) => f64::from(f32::from_le_bytes([a, b, c, d])),
-        (Kind::Float, _) => f64::from_le_bytes(raw),
-        (Kind::Unsigned, _) => u64::from_le_bytes(raw) as f64,
-        (Kind::Signed, 1) => f64::from(a as i8),
-        (Kind::Signed, 2) => f64::from(i16::from_le_bytes([a, b])),
-        (Kind::Signed, 4) => f64::from(i32::from_le_bytes([a, b, c, d])),
-        (Kind::Signed, _) => i64::from_le_bytes(raw) as f64,
     }
 }

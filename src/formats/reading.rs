@@ -257,7 +257,9 @@ impl Reading {
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, |table| table.replaced),
             faces: parser.map_or(0, |parser| parser.faces()),
-            skipped: table.map_or(Vec::new(), |table| [table.skipped([0; 2]), self.sampled.skipped()].concat()),
+            skipped: table.map_or(Vec::new(), |table| {
+                [table.skipped([0; 2]), self.sampled.skipped()].concat()
+            }),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
             preview: parser.and_then(|parser| parser.preview()),
@@ -387,7 +389,12 @@ impl Reading {
     fn tell(&mut self, bytes: &[u8], last: bool) -> Result<Option<Format>> {
         if self.format.is_none() && (last || bytes.len() >= HEAD) {
             let head = &bytes[..bytes.len().min(HEAD)];
-            self.format = Some(detect::detect_head(head, self.size, self.name.as_deref())?);
+            let found = detect::detect_head(head, self.size, self.name.as_deref());
+            self.format = Some(match found {
+                // Who says what the columns are has a table.
+                Err(_) if self.options.is_of_a_table() => Format::Xyz,
+                found => found?,
+            });
         }
         Ok(self.format)
     }

@@ -3,7 +3,7 @@
 use super::colors::{ColorRange, Tally};
 use super::sentinels::{LeftOut, Sentinels, Why};
 use super::{Positions, RawCloud, Stations};
-use crate::cloud::Attribute;
+use crate::cloud::{Attribute, Viewpoints};
 
 /// Which columns of a row hold what.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,6 +149,7 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    /// Where the rows were seen from.
     pub(super) stations: Stations,
     /// Rows left out because a coordinate is not finite.
     pub(super) dropped: usize,
@@ -351,7 +352,8 @@ impl Table {
     pub(super) fn finish(mut self, keep: bool) -> RawCloud {
         let verdict = self.verdict(keep);
         let mut block = self.take_block();
-        let [no_data, no_return] = block.leave_out(&verdict.left_out);
+        let mut viewpoints = self.stations.viewpoints(self.rows as usize);
+        let [no_data, no_return] = block.leave_out(&verdict.left_out, &mut viewpoints);
         let Block {
             positions,
             normals,
@@ -377,9 +379,9 @@ impl Table {
                     .collect(),
             });
         cloud.attributes = attributes;
-        cloud.viewpoints = self.stations.viewpoints(cloud.points());
         cloud.dropped = self.dropped + self.invalid;
         cloud.skipped = self.skipped([no_data, no_return]);
+        cloud.viewpoints = viewpoints;
         cloud.replaced = self.replaced;
         cloud
     }
@@ -387,7 +389,7 @@ impl Table {
 
 impl Block {
     /// Leaves out points that are none; how many had no data, and how many were no returns.
-    fn leave_out(&mut self, left_out: &LeftOut) -> [u64; 2] {
+    fn leave_out(&mut self, left_out: &LeftOut, viewpoints: &mut Option<Viewpoints>) -> [u64; 2] {
         let mut counts = [0; 2];
         if left_out.is_empty() {
             return counts;
@@ -406,6 +408,9 @@ impl Block {
         match &mut self.positions {
             Positions::F32(values) => retain(values, 3, &keep),
             Positions::F64(values) => retain(values, 3, &keep),
+        }
+        if let Some(of) = viewpoints.as_mut().and_then(|all| all.of.as_mut()) {
+            retain(of, 1, &keep);
         }
         if let Some(normals) = &mut self.normals {
             retain(normals, 3, &keep);

@@ -16,7 +16,9 @@
 //!   others. Columns that fit nothing become attributes `column4`, `column5` ….
 
 mod dialect;
+mod grid;
 mod guess;
+mod header;
 mod names;
 mod plan;
 

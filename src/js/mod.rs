@@ -12,7 +12,12 @@ pub mod wasm;
 pub mod wasm_pictures;
 #[cfg(all(
     not(feature = "engine"),
-    any(feature = "e57", feature = "files", feature = "las", feature = "packed")
+    any(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )
 ))]
 pub mod wasm_read;
 #[cfg(any(feature = "engine", feature = "exports"))]

@@ -6,7 +6,8 @@ use crate::base::error::Error;
 #[cfg(feature = "packed")]
 use crate::formats::Archive;
 use crate::formats::{
-    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions, Reading, Stations, Summary, Want,
+    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
+    Reading, Stations, Summary, Want,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};

@@ -126,6 +126,7 @@ test('what was surveyed stands on its z, and so does what is flat', () => {
   assert.equal(likelyUp({ file: { format: 'las' } }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ file: { format: 'ply' } }, [24, 29, 36]), 'y');
   assert.equal(likelyUp({ file: { format: 'xyz' }, origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
+  assert.equal(likelyUp({ seenFromAbove: true }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ file: { format: 'las' }, up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
 });
 

@@ -178,7 +178,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: what is written from the table of options, and every folder of pkg/wasm.
+/// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
 pub fn build() -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;

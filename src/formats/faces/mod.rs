@@ -231,7 +231,10 @@ pub struct Sampling {
 impl Sampling {
     /// What was left out, by why.
     pub(super) fn skipped(&self) -> Vec<(&'static str, u64)> {
-        let counts = [("unused-vertices", self.unused), ("broken-faces", self.broken)];
+        let counts = [
+            ("unused-vertices", self.unused),
+            ("broken-faces", self.broken),
+        ];
         counts.into_iter().filter(|(_, count)| *count > 0).collect()
     }
 }

@@ -149,13 +149,7 @@ struct Out<'a> {
 }
 
 /// Puts an object, where it is placed, into the table; `false` where it is too deep or too much.
-fn push(
-    model: &Model,
-    placed: &Placed,
-    outer: &Matrix,
-    depth: usize,
-    out: &mut Out,
-) -> bool {
+fn push(model: &Model, placed: &Placed, outer: &Matrix, depth: usize, out: &mut Out) -> bool {
     let Some(object) = model.objects.get(&placed.name) else {
         return true;
     };
@@ -178,16 +172,32 @@ fn push_object(object: &Object, matrix: &Matrix, out: &mut Out) -> bool {
     let first = out.table.next_row() as u32;
     for (i, &vertex) in object.vertices.iter().enumerate() {
         let [x, y, z] = apply(matrix, vertex);
-        let [r, g, b] = object.colors.get(&(i as u32)).unwrap_or(&[255; 3]).map(f64::from);
+        let [r, g, b] = object
+            .colors
+            .get(&(i as u32))
+            .unwrap_or(&[255; 3])
+            .map(f64::from);
         out.table.push(&[x, y, z, r, g, b]);
     }
     if let Some(faces) = out.faces {
         let mirrored = mirrors(matrix);
         for &[a, b, c] in &object.triangles {
             // What is no vertex of the object is none of the file: beyond all numbers of rows.
-            let row = |i: u32| if (i as usize) < object.vertices.len() { first + i } else { u32::MAX };
+            let row = |i: u32| {
+                if (i as usize) < object.vertices.len() {
+                    first + i
+                } else {
+                    u32::MAX
+                }
+            };
             let rows = if mirrored { [a, c, b] } else { [a, b, c] }.map(row);
-            faces.push(Face { rows: &rows, ..Face::default() }, |_| None);
+            faces.push(
+                Face {
+                    rows: &rows,
+                    ..Face::default()
+                },
+                |_| None,
+            );
         }
     }
     true
@@ -236,12 +246,21 @@ fn read_model(content: &[u8], path: &str, model: &mut Model) -> std::result::Res
                     "colorgroup" | "basematerials" => group = get("id").unwrap_or_default(),
                     "color" | "base" => {
                         let text = get("color").or_else(|| get("displaycolor"));
-                        let colors = model.colors.entry((path.into(), group.clone())).or_default();
+                        let colors = model
+                            .colors
+                            .entry((path.into(), group.clone()))
+                            .or_default();
                         colors.push(text.as_deref().and_then(color).unwrap_or([255; 3]));
                     }
                     "object" => {
                         let look = get("pid").zip(get("pindex").and_then(|text| text.parse().ok()));
-                        object = Some((get("id").unwrap_or_default(), Object { look, ..Object::default() }));
+                        object = Some((
+                            get("id").unwrap_or_default(),
+                            Object {
+                                look,
+                                ..Object::default()
+                            },
+                        ));
                     }
                     "vertex" => {
                         let axis = |name: &str| {
@@ -257,17 +276,26 @@ fn read_model(content: &[u8], path: &str, model: &mut Model) -> std::result::Res
                     "triangle" => {
                         model.triangles += 1;
                         if let Some((_, object)) = &mut object {
-                            let index = |name: &str| get(name).and_then(|text| text.parse::<u32>().ok());
-                            let corners = ["v1", "v2", "v3"].map(|name| index(name).unwrap_or(u32::MAX));
+                            let index =
+                                |name: &str| get(name).and_then(|text| text.parse::<u32>().ok());
+                            let corners =
+                                ["v1", "v2", "v3"].map(|name| index(name).unwrap_or(u32::MAX));
                             object.triangles.push(corners);
                             let first = index("p1").map(|i| i as usize);
-                            let own = get("pid").or_else(|| object.look.as_ref().map(|(group, _)| group.clone()));
+                            let own = get("pid")
+                                .or_else(|| object.look.as_ref().map(|(group, _)| group.clone()));
                             let colors = own.and_then(|own| model.colors.get(&(path.into(), own)));
-                            let places = [first, index("p2").map(|i| i as usize), index("p3").map(|i| i as usize)];
+                            let places = [
+                                first,
+                                index("p2").map(|i| i as usize),
+                                index("p3").map(|i| i as usize),
+                            ];
                             let whole = object.look.as_ref().map(|(_, i)| *i);
                             for (corner, place) in corners.into_iter().zip(places) {
                                 let place = place.or(first).or(whole);
-                                if let Some(color) = colors.zip(place).and_then(|(colors, i)| colors.get(i)) {
+                                if let Some(color) =
+                                    colors.zip(place).and_then(|(colors, i)| colors.get(i))
+                                {
                                     object.colors.insert(corner, *color);
                                 }
                             }
