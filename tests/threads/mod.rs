@@ -13,7 +13,12 @@ extern "C" {
 #[wasm_bindgen(module = "/tests/threads/workers.js")]
 extern "C" {
     #[wasm_bindgen(js_name = startWorkers)]
-    fn start_workers(bindings: JsString, module: JsValue, memory: JsValue, threads: usize) -> Promise;
+    fn start_workers(
+        bindings: JsString,
+        module: JsValue,
+        memory: JsValue,
+        threads: usize,
+    ) -> Promise;
 }
 
 /// Starts a pool of `threads`, once a test binary.
