@@ -14,7 +14,7 @@ mod picture;
 use super::colors::ColorRange;
 use super::input::Input;
 use super::lzf;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Precision, Table};
 use super::text::number;
 use crate::base::error::Result;

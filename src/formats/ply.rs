@@ -14,7 +14,7 @@ mod header;
 
 use super::faces::Faces;
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::splats::SPLATS;
 use super::table::Table;
 use super::text::{number, words};

@@ -1,8 +1,9 @@
 //! Rows of named numbers become the arrays of a [`RawCloud`], all at once or block by block.
 
 use super::colors::{ColorRange, Tally};
+use super::raw_cloud::{Positions, RawCloud};
 use super::sentinels::{LeftOut, Sentinels, Why};
-use super::{Positions, RawCloud, Stations};
+use super::stations::Stations;
 use crate::cloud::Attribute;
 
 /// Which columns of a row hold what.

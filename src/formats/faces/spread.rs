@@ -5,7 +5,7 @@
 //! 1986): candidates in random order are accepted where no accepted point of the same side is within a radius, which shrinks
 //! from round to round until there are enough (McCool and Fiume, "Hierarchical Poisson Disk Sampling Distributions", 1992).
 
-use super::{area_normal, dot, unit};
+use super::vectors::{area_normal, dot, unit};
 use crate::base::rng::Rng;
 
 /// Candidates for each point; fewer where they would take more memory than there are points worth it.

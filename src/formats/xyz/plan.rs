@@ -8,8 +8,8 @@ use super::super::table::Columns;
 use super::super::text::{decoded, quote};
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value, hex};
 use super::guess::{Column, guess, is_colmap};
+use super::line::{Line, is_comment, line_of};
 use super::names;
-use super::{Line, line_of};
 use crate::base::error::Result;
 
 /// A line of the file.
@@ -259,11 +259,6 @@ fn is_small_packed(column: &Column) -> bool {
 /// Whether a line says something: it is neither blank nor only marks.
 fn is_said(line: &[u8]) -> bool {
     line.iter().any(|b| !b.is_ascii_whitespace())
-}
-
-pub(super) fn is_comment(line: &[u8]) -> bool {
-    let line = line.trim_ascii_start();
-    line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark))
 }
 
 /// The dialect in which most lines are rows, with the fewest values that are no numbers and the fewest widths.
