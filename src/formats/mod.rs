@@ -17,6 +17,7 @@
     allow(dead_code, unused_variables)
 )]
 
+mod block;
 mod colors;
 mod detect;
 #[cfg(feature = "e57")]
@@ -63,6 +64,7 @@ mod write;
 mod xyz;
 
 use crate::base::error::Result;
+pub use block::{Block, ColorValues, Verdict};
 pub use detect::detect;
 pub use faces::{FaceMode, Picture, Sampling, Want};
 pub use format::Format;
@@ -75,7 +77,6 @@ pub use raw_cloud::{Positions, RawCloud};
 pub use reading::{Reading, Summary};
 pub use sentinels::LeftOut;
 pub use stations::{Run, Stations};
-pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
 /// Reads a file that is wholly in memory; of a file with faces its vertices.

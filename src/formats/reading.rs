@@ -1,5 +1,6 @@
 //! A file read slice by slice.
 
+use super::block::{Block, Verdict};
 use super::detect;
 use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::format::Format;
@@ -10,7 +11,7 @@ use super::preview::Preview;
 use super::raw_cloud::{Positions, RawCloud};
 use super::sentinels::LeftOut;
 use super::stations::Stations;
-use super::table::{Block, Table, Verdict};
+use super::table::Table;
 use super::text::MARK;
 #[cfg(feature = "files")]
 use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
@@ -381,7 +382,7 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
             feature = "packed"
         )))]
         other => {
-            return Err(crate::Error::UnsupportedFile {
+            return Err(crate::base::error::Error::UnsupportedFile {
                 format: other.title(),
                 expected: "a build with its reader".into(),
                 found: "one without".into(),

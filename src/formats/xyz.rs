@@ -16,7 +16,9 @@
 //!   others. Columns that fit nothing become attributes `column4`, `column5` ….
 
 mod dialect;
+mod grid;
 mod guess;
+mod header;
 mod line;
 mod names;
 mod plan;
@@ -26,9 +28,9 @@ use super::options::ReadOptions;
 use super::parser::{Parser, Step};
 use super::preview::Preview;
 use super::table::Table;
-use crate::base::error::Result;
-use line::{Line, is_comment, line_of};
-use plan::{NoPlan, Numbered, Plan};
+use crate::base::error::{Error, Result};
+use line::{Line, NoPlan, Numbered, is_comment, line_of};
+use plan::Plan;
 
 /// Lines that decide what the columns are.
 const LOOK_AHEAD: usize = 1000;
@@ -191,7 +193,7 @@ impl Xyz {
         }
     }
 
-    fn no_rows(&self, input: &Input, expected: &str) -> crate::Error {
+    fn no_rows(&self, input: &Input, expected: &str) -> Error {
         let found = format!("the end of the file after {} rows", self.rows);
         input.bad_at_line(input.place.line.max(1), expected, found)
     }

@@ -5,18 +5,13 @@ use super::super::input::Input;
 use super::super::options::ReadOptions;
 use super::super::preview::Preview;
 use super::super::table::Columns;
-use super::super::text::{decoded, quote};
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value, hex};
+use super::grid::Grid;
 use super::guess::{Column, guess, is_colmap};
-use super::line::{Line, is_comment, line_of};
+use super::header::{Header, header, header_names, is_header_of_numbers};
+use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
 use super::names;
-use crate::base::error::Result;
-
-/// A line of the file.
-pub(super) struct Numbered {
-    pub(super) number: u64,
-    pub(super) bytes: Vec<u8>,
-}
+use crate::base::error::{Error, Result};
 
 /// How rows are read.
 pub(super) struct Plan {
@@ -33,28 +28,6 @@ pub(super) struct Plan {
     /// Values beyond the columns are passed over.
     ragged: bool,
     pub(super) preview: Preview,
-}
-
-/// Why there is no plan.
-pub(super) enum NoPlan {
-    /// Nothing in the lines is a row or names columns.
-    Nothing,
-    /// A line is wrong.
-    Line {
-        number: u64,
-        expected: String,
-        found: String,
-    },
-}
-
-impl NoPlan {
-    fn line(line: &Numbered, expected: impl Into<String>) -> NoPlan {
-        NoPlan::Line {
-            number: line.number,
-            expected: expected.into(),
-            found: quote(&line.bytes),
-        }
-    }
 }
 
 impl Plan {
@@ -244,7 +217,7 @@ impl Plan {
         Ok(())
     }
 
-    fn wrong_width(&self, line: &[u8], input: &Input, number: u64) -> crate::Error {
+    fn wrong_width(&self, line: &[u8], input: &Input, number: u64) -> Error {
         let expected = format!("{} values", self.roles.len().max(3));
         input.bad_value(number, &expected, line)
     }
@@ -312,215 +285,6 @@ fn score(said: &[&Numbered], dialect: Dialect) -> (usize, usize, usize) {
         }
     }
     (rows, 1000 * numbers / values.max(1), alike)
-}
-
-/// A header that numbers its columns, as pandas writes it: `,0,1,2`.
-fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {
-    let Some(line) = lines.first() else {
-        return false;
-    };
-    let mut tokens = dialect.split(&line.bytes).enumerate();
-    lines.len() > 1
-        && tokens.next().is_some_and(|(_, first)| first.is_empty())
-        && tokens.all(|(i, token)| dialect.value(token) == Value::Number(i as f64 - 1.0))
-}
-
-/// The first rows.
-#[derive(Default)]
-struct Grid {
-    columns: Vec<Column>,
-    /// Values row by row, whatever their number.
-    rows: Vec<Vec<f64>>,
-    texts: Vec<Vec<String>>,
-    /// A value has a decimal comma.
-    commas: bool,
-    /// Number of the first row's line.
-    first_row: u64,
-}
-
-impl Grid {
-    fn of(lines: &[&Numbered], dialect: Dialect) -> Grid {
-        const SHOWN: usize = 8;
-        const MOST_SHOWN: usize = 64;
-        let mut grid = Grid {
-            first_row: lines.first().map_or(0, |line| line.number),
-            ..Grid::default()
-        };
-        for line in lines {
-            let tokens: Vec<&[u8]> = dialect.split(&line.bytes).collect();
-            if grid.columns.is_empty() {
-                grid.columns.resize_with(tokens.len(), Column::default);
-            }
-            if grid.texts.len() < SHOWN {
-                let text = |token: &&[u8]| decoded(&token[..token.len().min(40)]);
-                grid.texts
-                    .push(tokens.iter().take(MOST_SHOWN).map(text).collect());
-            }
-            let values: Vec<Value> = tokens.iter().map(|token| dialect.value(token)).collect();
-            let number = |value: &Value| match value {
-                Value::Number(value) | Value::Hex(value) => *value,
-                Value::Empty | Value::Text => f64::NAN,
-            };
-            grid.commas |=
-                dialect.decimal_comma && tokens.iter().any(|token| token.contains(&b','));
-            grid.rows.push(values.iter().map(number).collect());
-            for (column, (value, token)) in grid.columns.iter_mut().zip(values.iter().zip(&tokens))
-            {
-                column.values.push(number(value));
-                column.texts += usize::from(*value == Value::Text);
-                column.empty += usize::from(*value == Value::Empty);
-                column.hexes += usize::from(matches!(value, Value::Hex(_)));
-                column.fractions += usize::from(token.iter().any(|b| b".,eEdD".contains(b)));
-            }
-        }
-        // A mark at the end of every line has nothing behind it.
-        while grid
-            .columns
-            .last()
-            .is_some_and(|column| column.empty == column.values.len())
-        {
-            grid.columns.pop();
-        }
-        // Rows that are too short are refused later; here all columns are as long as the rows are many.
-        for column in &mut grid.columns {
-            column.values.resize(lines.len(), f64::NAN);
-        }
-        grid
-    }
-}
-
-enum Header {
-    Names {
-        roles: Vec<String>,
-        names: Vec<String>,
-        ragged: bool,
-    },
-    None,
-}
-
-/// What the lines before the rows call the columns.
-fn header(
-    before: &[&Numbered],
-    dialect: Dialect,
-    grid: &Grid,
-) -> std::result::Result<Header, NoPlan> {
-    let width = grid.columns.len();
-    let Some((line, mut names)) = header_names(before, dialect, width) else {
-        // Without rows the first line that is none says more.
-        let last = before.last().filter(|line| {
-            let names = dialect.split(&line.bytes).count();
-            width > 0
-                && !is_comment(&line.bytes)
-                && names == width
-                && line_of(&line.bytes, dialect) == Line::Other
-        });
-        return match last {
-            Some(line) if dialect.split(&line.bytes).all(|name| name.is_empty()) => {
-                Ok(Header::None)
-            }
-            Some(line) if is_header_of_numbers(&[line, line], dialect) => Ok(Header::None),
-            Some(line) => Err(NoPlan::line(
-                line,
-                "numbers, or names of columns with x, y and z, or the option columns",
-            )),
-            None => Ok(Header::None),
-        };
-    };
-    if names::contradict(&names) {
-        return Err(NoPlan::line(
-            line,
-            "numbers, or different column names with x, y and z",
-        ));
-    }
-    // COLMAP: a list whose length differs ends the row.
-    let list = names.iter().position(|name| name.contains("[]"));
-    if let Some(list) = list {
-        names.truncate(list);
-    }
-    if names.len() + 1 == width && list.is_none() && is_row_name(grid) {
-        names.insert(0, String::new());
-    }
-    let roles = names::roles(&names).unwrap_or_default();
-    let matches = width == 0 || roles.len() == width || list.is_some();
-    if !matches && is_comment(&line.bytes) {
-        return Ok(Header::None);
-    }
-    // Behind the columns that have names a mark may end each row.
-    let wider = roles.len() > width && roles[width..].iter().all(|role| role == "-");
-    if !matches && !wider {
-        return Err(NoPlan::Line {
-            number: grid.first_row,
-            expected: format!("{} values, one for each name", roles.len()),
-            found: format!("{width} values"),
-        });
-    }
-    let mut roles = roles;
-    if list.is_none() && width > 0 {
-        roles.truncate(width);
-    }
-    Ok(Header::Names {
-        roles,
-        names,
-        ragged: list.is_some(),
-    })
-}
-
-/// R writes names of rows without a name for their column.
-fn is_row_name(grid: &Grid) -> bool {
-    let first = &grid.columns[0];
-    let runs = first.values.windows(2).all(|pair| pair[1] - pair[0] == 1.0);
-    grid.rows.len() > 1 && (runs || !first.is_numeric())
-}
-
-/// The last line before the rows that names x, y and z, and its names.
-fn header_names<'a>(
-    before: &[&'a Numbered],
-    dialect: Dialect,
-    width: usize,
-) -> Option<(&'a Numbered, Vec<String>)> {
-    before.iter().rev().find_map(|line| {
-        let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
-        let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
-        let text = &bytes[marks..];
-        let own = std::iter::once(dialect);
-        let splits: Vec<Vec<String>> = own
-            .chain(
-                DIALECTS
-                    .into_iter()
-                    .filter(|dialect| !dialect.decimal_comma),
-            )
-            .map(|dialect| names_of(text, dialect))
-            .filter(|names| names::roles(names).is_some())
-            .collect();
-        let fitting = splits.iter().find(|names| names.len() == width);
-        let found = fitting.or_else(|| {
-            splits
-                .iter()
-                .max_by_key(|names| std::cmp::Reverse(names.len().abs_diff(width)))
-        });
-        found.map(|names| (*line, names.clone()))
-    })
-}
-
-/// Names of columns; between blanks a unit in brackets belongs to the name before it.
-fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for token in dialect.split(text) {
-        let name = decoded(token);
-        let open =
-            |name: &String| name.matches(['(', '[']).count() > name.matches([')', ']']).count();
-        match names.last_mut() {
-            Some(last)
-                if dialect.delimiter == Delimiter::Blanks
-                    && (name.starts_with(['(', '[']) || open(last)) =>
-            {
-                last.push(' ');
-                last.push_str(&name);
-            }
-            _ => names.push(name),
-        }
-    }
-    names
 }
 
 /// Whether the lines can be rows: the first that says something is one, counts them, or names x, y and z.

@@ -1,0 +1,70 @@
+//! The first rows as columns of values.
+
+use super::super::text::decoded;
+use super::dialect::{Dialect, Value};
+use super::guess::Column;
+use super::line::Numbered;
+
+/// The first rows.
+#[derive(Default)]
+pub(super) struct Grid {
+    pub(super) columns: Vec<Column>,
+    /// Values row by row, whatever their number.
+    pub(super) rows: Vec<Vec<f64>>,
+    pub(super) texts: Vec<Vec<String>>,
+    /// A value has a decimal comma.
+    pub(super) commas: bool,
+    /// Number of the first row's line.
+    pub(super) first_row: u64,
+}
+
+impl Grid {
+    pub(super) fn of(lines: &[&Numbered], dialect: Dialect) -> Grid {
+        const SHOWN: usize = 8;
+        const MOST_SHOWN: usize = 64;
+        let mut grid = Grid {
+            first_row: lines.first().map_or(0, |line| line.number),
+            ..Grid::default()
+        };
+        for line in lines {
+            let tokens: Vec<&[u8]> = dialect.split(&line.bytes).collect();
+            if grid.columns.is_empty() {
+                grid.columns.resize_with(tokens.len(), Column::default);
+            }
+            if grid.texts.len() < SHOWN {
+                let text = |token: &&[u8]| decoded(&token[..token.len().min(40)]);
+                grid.texts
+                    .push(tokens.iter().take(MOST_SHOWN).map(text).collect());
+            }
+            let values: Vec<Value> = tokens.iter().map(|token| dialect.value(token)).collect();
+            let number = |value: &Value| match value {
+                Value::Number(value) | Value::Hex(value) => *value,
+                Value::Empty | Value::Text => f64::NAN,
+            };
+            grid.commas |=
+                dialect.decimal_comma && tokens.iter().any(|token| token.contains(&b','));
+            grid.rows.push(values.iter().map(number).collect());
+            for (column, (value, token)) in grid.columns.iter_mut().zip(values.iter().zip(&tokens))
+            {
+                column.values.push(number(value));
+                column.texts += usize::from(*value == Value::Text);
+                column.empty += usize::from(*value == Value::Empty);
+                column.hexes += usize::from(matches!(value, Value::Hex(_)));
+                column.fractions += usize::from(token.iter().any(|b| b".,eEdD".contains(b)));
+            }
+        }
+        // A mark at the end of every line has nothing behind it.
+        while grid
+            .columns
+            .last()
+            .is_some_and(|column| column.empty == column.values.len())
+        {
+            grid.columns.pop();
+        }
+        // Rows that are too short are refused later; here all columns are as long as the rows are many.
+        for column in &mut grid.columns {
+            column.values.resize(lines.len(), f64::NAN);
+        }
+        grid
+    }
+}

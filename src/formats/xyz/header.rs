@@ -1,0 +1,152 @@
+//! What the lines before the rows call the columns.
+
+use super::super::text::decoded;
+use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
+use super::grid::Grid;
+use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
+use super::names;
+
+pub(super) enum Header {
+    Names {
+        roles: Vec<String>,
+        names: Vec<String>,
+        ragged: bool,
+    },
+    None,
+}
+
+/// What the lines before the rows call the columns.
+pub(super) fn header(
+    before: &[&Numbered],
+    dialect: Dialect,
+    grid: &Grid,
+) -> std::result::Result<Header, NoPlan> {
+    let width = grid.columns.len();
+    let Some((line, mut names)) = header_names(before, dialect, width) else {
+        // Without rows the first line that is none says more.
+        let last = before.last().filter(|line| {
+            let names = dialect.split(&line.bytes).count();
+            width > 0
+                && !is_comment(&line.bytes)
+                && names == width
+                && line_of(&line.bytes, dialect) == Line::Other
+        });
+        return match last {
+            Some(line) if dialect.split(&line.bytes).all(|name| name.is_empty()) => {
+                Ok(Header::None)
+            }
+            Some(line) if is_header_of_numbers(&[line, line], dialect) => Ok(Header::None),
+            Some(line) => Err(NoPlan::line(
+                line,
+                "numbers, or names of columns with x, y and z, or the option columns",
+            )),
+            None => Ok(Header::None),
+        };
+    };
+    if names::contradict(&names) {
+        return Err(NoPlan::line(
+            line,
+            "numbers, or different column names with x, y and z",
+        ));
+    }
+    // COLMAP: a list whose length differs ends the row.
+    let list = names.iter().position(|name| name.contains("[]"));
+    if let Some(list) = list {
+        names.truncate(list);
+    }
+    if names.len() + 1 == width && list.is_none() && is_row_name(grid) {
+        names.insert(0, String::new());
+    }
+    let roles = names::roles(&names).unwrap_or_default();
+    let matches = width == 0 || roles.len() == width || list.is_some();
+    if !matches && is_comment(&line.bytes) {
+        return Ok(Header::None);
+    }
+    // Behind the columns that have names a mark may end each row.
+    let wider = roles.len() > width && roles[width..].iter().all(|role| role == "-");
+    if !matches && !wider {
+        return Err(NoPlan::Line {
+            number: grid.first_row,
+            expected: format!("{} values, one for each name", roles.len()),
+            found: format!("{width} values"),
+        });
+    }
+    let mut roles = roles;
+    if list.is_none() && width > 0 {
+        roles.truncate(width);
+    }
+    Ok(Header::Names {
+        roles,
+        names,
+        ragged: list.is_some(),
+    })
+}
+
+/// R writes names of rows without a name for their column.
+fn is_row_name(grid: &Grid) -> bool {
+    let first = &grid.columns[0];
+    let runs = first.values.windows(2).all(|pair| pair[1] - pair[0] == 1.0);
+    grid.rows.len() > 1 && (runs || !first.is_numeric())
+}
+
+/// The last line before the rows that names x, y and z, and its names.
+pub(super) fn header_names<'a>(
+    before: &[&'a Numbered],
+    dialect: Dialect,
+    width: usize,
+) -> Option<(&'a Numbered, Vec<String>)> {
+    before.iter().rev().find_map(|line| {
+        let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
+        let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
+        let text = &bytes[marks..];
+        let own = std::iter::once(dialect);
+        let splits: Vec<Vec<String>> = own
+            .chain(
+                DIALECTS
+                    .into_iter()
+                    .filter(|dialect| !dialect.decimal_comma),
+            )
+            .map(|dialect| names_of(text, dialect))
+            .filter(|names| names::roles(names).is_some())
+            .collect();
+        let fitting = splits.iter().find(|names| names.len() == width);
+        let found = fitting.or_else(|| {
+            splits
+                .iter()
+                .max_by_key(|names| std::cmp::Reverse(names.len().abs_diff(width)))
+        });
+        found.map(|names| (*line, names.clone()))
+    })
+}
+
+/// Names of columns; between blanks a unit in brackets belongs to the name before it.
+fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for token in dialect.split(text) {
+        let name = decoded(token);
+        let open =
+            |name: &String| name.matches(['(', '[']).count() > name.matches([')', ']']).count();
+        match names.last_mut() {
+            Some(last)
+                if dialect.delimiter == Delimiter::Blanks
+                    && (name.starts_with(['(', '[']) || open(last)) =>
+            {
+                last.push(' ');
+                last.push_str(&name);
+            }
+            _ => names.push(name),
+        }
+    }
+    names
+}
+
+/// A header that numbers its columns, as pandas writes it: `,0,1,2`.
+pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {
+    let Some(line) = lines.first() else {
+        return false;
+    };
+    let mut tokens = dialect.split(&line.bytes).enumerate();
+    lines.len() > 1
+        && tokens.next().is_some_and(|(_, first)| first.is_empty())
+        && tokens.all(|(i, token)| dialect.value(token) == Value::Number(i as f64 - 1.0))
+}
