@@ -56,7 +56,11 @@ fn code(text: &str) -> String {
         code.push('\n');
     }
     // Who may see something is no import.
-    code.replace("pub(in crate::", "pub(")
+    let mut parts = code.split("pub(in ");
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |code, part| {
+        code + part.split_once(')').map_or("", |(_, after)| after)
+    })
 }
 
 /// All paths of a code as lists of names, those in braces one by one: `a::{b, c::d}` is `a::b` and `a::c::d`.
