@@ -120,6 +120,9 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   attributes?: Record<string, Float32Array>;
   origin?: [number, number, number];
   up?: [number, number, number];
+  unit?: Unit;
+  crs?: Crs;
+  faces?: number;
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -150,10 +153,20 @@ export interface CloudInfo {
 }
 
 /** Formats that are read; LAS is LAZ, too, and `'xyz'` any rows of numbers as text. */
-export type Format = 'ply' | 'xyz' | 'pcd' | 'obj' | 'off' | 'stl' | 'glb' | 'las' | 'e57';
+export type Format = 'ply' | 'xyz' | 'pcd' | 'obj' | 'off' | 'stl' | 'glb' | 'las' | 'e57' | 'ptx' | 'grid' | 'tif' | '3mf' | 'splat' | 'spz';
 
 /** What a file held. Coordinates are the file's: `Float64Array` where single precision would move one by more than 2⁻²² of the diagonal, and for LAS. */
 export interface FileCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> extends PointCloud<Positions> {
+  /**
+   * What the columns of a table of text were taken for, as `columns` of {@link ReadOptions} says it: `x y z`, `nx ny nz`,
+   * `red green blue`, `rgb` for a packed colour, `-` for one that was passed over, or the attribute's name.
+   */
+  columns?: string[];
+  /**
+   * Points left out, by why: `not-finite`, `invalid` (the file marks them), `no-data` (a coordinate stands for a missing one,
+   * such as -9999), `no-return` (many at exactly 0 0 0 or at the sensor).
+   */
+  skipped: Record<string, number>;
   file: {
     format: Format;
     /** Points left out because a coordinate was NaN or infinite, or marked as invalid. */
@@ -166,6 +179,18 @@ export interface FileCloud<Positions extends Float32Array | Float64Array = Float
     sampled?: number;
     /** Files that the faces name and that were not there (`beside`), and pictures that are no PNG, JPEG or WebP: their colours are missing. */
     missing?: string[];
+    /** What else is to be said of the points, in sentences. */
+    notes: string[];
+    /** The first rows of a table of text, and how they were taken apart. */
+    table?: {
+      rows: string[][];
+      /** What the file calls its columns; empty where it does not. */
+      names: string[];
+      delimiter: string;
+      decimal: string;
+      /** The columns were guessed, and could be something else: a person should look at `columns`. */
+      weak: boolean;
+    };
   };
 }
 
@@ -182,6 +207,19 @@ export interface ReadOptions {
   faces?: 'sample' | 'vertices';
   /** The files that a mesh may name, its material library and pictures: those dropped along, or what gives the data of a name. */
   beside?: Beside;
+  /**
+   * Of a table of text: what each column holds, as {@link FileCloud.columns} says it. Columns beyond are passed over. Default:
+   * told from its names, else from its values.
+   */
+  columns?: string[];
+  /** Of a table of text: the character between values, `' '` for any number of blanks and tabs. Default: told from the first lines. */
+  delimiter?: string;
+  /** Of a table of text: the decimal mark. Default: told from the first lines. */
+  decimal?: '.' | ',';
+  /** Of a table of text: lines that are passed over before anything else. Default 0. */
+  skip?: number;
+  /** What becomes of points that stand for a missing measurement; see {@link FileCloud.skipped}. Default `'drop'`. */
+  sentinels?: 'drop' | 'keep';
 }
 
 /** Files by their names, folders and case aside; or a function, which gives `undefined` for what there is not. */
@@ -268,10 +306,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `pictures/` and `exports/`, or the URLs of the wasm files.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/` and `exports/`, or the URLs of the wasm files.
    * All but the first two are loaded when a file of theirs is read or written. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; pictures?: string | URL; exports?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.

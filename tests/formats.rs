@@ -45,7 +45,8 @@ fn colours_come_in_bytes_floats_and_sixteen_bits() {
         ("float", "1 0.5 0", [255, 128, 0]),
         ("float", "200 100 0", [200, 100, 0]),
         ("ushort", "65535 257 0", [255, 1, 0]),
-        ("int", "300 -5 0", [1, 0, 0]),
+        ("ushort", "4095 2048 0", [255, 128, 0]),
+        ("int", "65535 -5 0", [255, 0, 0]),
     ] {
         let cloud = read(ply(kind, text).as_bytes(), Format::Ply).unwrap();
         assert_eq!(cloud.colors.unwrap()[..3], bytes, "{kind} {text}");
@@ -217,11 +218,9 @@ fn what_is_written_reads_back_to_the_same_bits() {
         for ascii in [false, true] {
             let bytes = write(&cloud, None, output(format), text(ascii)).unwrap();
             assert_eq!(detect(&bytes, None).unwrap(), format);
-            assert_eq!(
-                read(&bytes, format).unwrap(),
-                cloud,
-                "{format:?} ascii {ascii}"
-            );
+            let mut back = read(&bytes, format).unwrap();
+            back.columns.clear();
+            assert_eq!(back, cloud, "{format:?} ascii {ascii}");
         }
     }
     let triangles = [0, 1, 2, 2, 1, 3];
@@ -458,12 +457,6 @@ fn headers_of_many_dialects() {
             "{bad:?}: {error}"
         );
     }
-    let twice = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
-                 property float x\nend_header\n1 2 3 4\n";
-    assert_eq!(
-        read(twice.as_bytes(), Format::Ply).unwrap_err().index(),
-        Some(3)
-    );
 }
 
 #[test]

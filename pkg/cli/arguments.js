@@ -4,6 +4,7 @@ import { parseArgs } from 'node:util';
 import { ENGINE } from '../engine/options.js';
 import { nearest } from '../engine/rules.js';
 import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
+import { READ_FLAGS, readSaid } from './read-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';
 import { UsageError } from './usage.js';
@@ -24,8 +25,8 @@ import { UsageError } from './usage.js';
  * @property {boolean} json
  * @property {'auto' | number} threads
  * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
+ * @property {import('./read-flags.js').ReadSaid & Record<string, any>} read how each is read
  * @property {Record<string, any>} own options of the function that has the command's name
- * @property {Record<string, any>} read options of `read`
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
  */
@@ -59,6 +60,7 @@ function parseFlags(command, argv) {
     json: { type: 'boolean' },
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
+    ...READ_FLAGS,
     ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS }),
     ...parserOptions(flagsOf(command)),
   };
@@ -97,7 +99,7 @@ function task(command, values, inputs) {
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
   const { own, read, write } = optionsFrom(command, values);
-  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, read, write };
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write };
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;

@@ -5,8 +5,8 @@ import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { doubtLines, infoLines, pointsOf, reportLine } from './report-text.js';
 import { UsageError } from './usage.js';
-import { doubtLines, infoLines, pointsOf, reportLine } from './words.js';
 
 /** @import { Engine } from '../types.js' */
 /** @import { Job, Task } from './arguments.js' */
@@ -93,7 +93,7 @@ async function perform(engine, { command, cloud: said, own, read, write, format 
   }
   if (command === 'inspect') {
     const info = await engine.inspect(cloud, watch);
-    return { report: { ...info, file }, text: infoLines(info, cloud), doubts: [] };
+    return { report: { ...info, skipped: cloud.skipped, columns: cloud.columns, file }, text: infoLines(info, cloud), doubts: [] };
   }
   const result = await engine[command](withSaid(cloud, said), { ...own, ...watch, transfer: true });
   const { report } = result;
@@ -102,7 +102,7 @@ async function perform(engine, { command, cloud: said, own, read, write, format 
     if (output === '-') await print(bytes);
     else await writeOutput(output, bytes, signal);
   }
-  return { report, text: reportLine(report, file), doubts: doubtLines(report) };
+  return { report, text: reportLine(report, cloud), doubts: doubtLines(report) };
 }
 
 /** @param {Task} task @param {Outcome} outcome */

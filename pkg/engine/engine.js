@@ -3,21 +3,21 @@
  * that does them.
  */
 import { direction } from './axes.js';
-import { awake } from './keep-alive.js';
+import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
-import { finder } from '../files/beside.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { EXPORTED, checkEngineOptions, checkModel, checkOptions } from './options.js';
-import { readFile, readerError, readerOf } from '../files/reading.js';
+import { readScan } from '../files/archive.js';
+import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { slicesOf } from '../files/byte-source.js';
+import { byteSourceOf } from '../files/byte-source.js';
 
 /** @import { Build, EngineOptions } from '../types.js' */
 /** @import { Host, Watch, WorkerLike } from './worker-host.js' */
-/** @import { Glue, Request, WasmBuild } from './core.js' */
+/** @import { Bindings, Request, WasmBuild } from './core.js' */
 
 /**
  * What differs between a browser and Node.
@@ -26,7 +26,7 @@ import { slicesOf } from '../files/byte-source.js';
  * @property {() => number} cores
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
  * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
- * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(build: WasmBuild) => Promise<Bindings>} loadBindings an instance of its own, not started
  * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
@@ -110,15 +110,14 @@ export class Engine {
   /** @param {any} data @param {any} [options] */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
-    const file = slicesOf(data, transfer);
-    const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
+    const file = byteSourceOf(data, transfer);
+    const given = { name: data.name, ...own };
     return this.#queued(watch, async (signal) => {
-      const reader = await readerOf(file, own.format);
-      const decode = (/** @type {Uint8Array} */ bytes) => this.#withModule('pictures', signal, (ask) => ask({ call: 'decodePicture', args: [bytes] }));
-      const helpers = { find: finder(beside), decode };
-      return this.#withModule(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }, helpers)).catch((error) => {
-        throw readerError(error, reader);
+      /** @type {import('../files/archive.js').Open} */
+      const open = (build, job) => this.#withModule(build, signal, job).catch((error) => {
+        throw readerError(error, build);
       });
+      return readScan(open, file, given, { signal, onProgress: watch.onProgress });
     });
   }
 
@@ -179,7 +178,7 @@ export class Engine {
     this.#calls++;
     clearTimeout(this.#idle);
     try {
-      return await awake(work());
+      return await keepAlive(work());
     } finally {
       this.#calls--;
       if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {
@@ -256,12 +255,12 @@ export class Engine {
    * @returns {Promise<T>}
    */
   async #withModule(build, signal, job) {
-    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const { compile, loadBindings, startWorker, worker } = this.#platform;
     const module = await unlessAborted(compile(build, this.#wasmUrl), signal);
     const inWorker = this.build === 'threads' || (this.#worker ?? worker);
     const host = await (inWorker
       ? workerHost(() => startWorker(this.#workerUrl), { build, threads: 1, module })
-      : inProcessHost(await loadGlue(build), { build, module }));
+      : inProcessHost(await loadBindings(build), { build, module }));
     try {
       return await job((request) => host.run(request, { signal }));
     } finally {
@@ -284,7 +283,7 @@ export class Engine {
 
   async #startBuild() {
     const { build, threads } = this;
-    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const { compile, loadBindings, startWorker, worker } = this.#platform;
     const module = await compile(build, this.#wasmUrl);
     const startOne = () => startWorker(this.#workerUrl);
     if (build === 'threads') {
@@ -295,7 +294,7 @@ export class Engine {
     }
     return this.#worker ?? worker
       ? workerHost(startOne, { build, threads, module })
-      : inProcessHost(await loadGlue(build), { build, module });
+      : inProcessHost(await loadBindings(build), { build, module });
   }
 }
 

@@ -10,9 +10,14 @@ import { badOption, checkTable, choice, defaultsOf, integer, isObject, number, r
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
-  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57'), fallback: undefined },
+  format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57', 'ptx', 'grid', 'tif', '3mf', 'splat', 'spz'), fallback: undefined },
   faces: choice('sample', 'vertices'),
   beside: rule('an array of Files, or a function that gives the data of a name', (value) => typeof value === 'function' || (Array.isArray(value) && value.every((file) => typeof file?.name === 'string'))),
+  columns: rule('an array of column names with x, y and z', (value) => Array.isArray(value) && value.every((name) => typeof name === 'string')),
+  delimiter: rule("one character, ' ' for blanks", (value) => typeof value === 'string' && value.length === 1),
+  decimal: { ...choice('.', ','), fallback: undefined },
+  skip: integer(0, Number.MAX_SAFE_INTEGER, 0),
+  sentinels: choice('drop', 'keep'),
 };
 
 const WRITE = {
@@ -36,7 +41,7 @@ const SAMPLE = {
 };
 
 /** Folders of `pkg/wasm`. */
-const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'pictures', 'exports'];
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports'];
 
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),

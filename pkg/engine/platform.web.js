@@ -1,6 +1,6 @@
 /** Browsers. Nothing here runs before an engine is made, so a server may import it. */
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './wasm-bindings.js';
+import { loadBindings } from './wasm-bindings.js';
 import { compileOnce } from './modules.js';
 import { startScript } from './worker-script.js';
 
@@ -13,7 +13,7 @@ export const platform = {
       ? { possible: true, reason: 'the page is cross-origin isolated' }
       : { possible: false, reason: 'the page is not cross-origin isolated' },
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl), compileFrom),
-  loadGlue,
+  loadBindings,
   startWorker(workerUrl) {
     const worker = startScript(workerUrl);
     return {
@@ -41,6 +41,7 @@ function wasmFile(build, given) {
     files: () => new URL('../wasm/files/pointweave_bg.wasm', import.meta.url),
     las: () => new URL('../wasm/las/pointweave_bg.wasm', import.meta.url),
     e57: () => new URL('../wasm/e57/pointweave_bg.wasm', import.meta.url),
+    packed: () => new URL('../wasm/packed/pointweave_bg.wasm', import.meta.url),
     pictures: () => new URL('../wasm/pictures/pointweave_bg.wasm', import.meta.url),
     exports: () => new URL('../wasm/exports/pointweave_bg.wasm', import.meta.url),
   }[build]();

@@ -16,7 +16,7 @@ export function finder(beside) {
 }
 
 /** What is behind the folders of a path, of either system's, in lower case. @param {string} path */
-function lastOf(path) {
+export function lastOf(path) {
   return path.split(/[\\/]/).at(-1)?.toLowerCase();
 }
 

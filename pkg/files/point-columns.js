@@ -1,5 +1,6 @@
 /** The points of a file, which come in blocks, as the arrays of a cloud. */
 import { PointweaveError } from '../engine/errors.js';
+import { kept, leftOutOf } from './left-out.js';
 
 /** @import { FileCloud, Format } from '../types.js' */
 
@@ -32,6 +33,12 @@ import { PointweaveError } from '../engine/errors.js';
  * @property {import('../types.js').Crs} [crs]
  * @property {number} sampled points that were taken from faces
  * @property {string[]} missing files that the faces name and that were not there
+ * @property {string[]} attributes their names, in order
+ * @property {import('./left-out.js').LeftOut} leftOut
+ * @property {Record<string, number>} skipped
+ * @property {string[]} columns
+ * @property {string[]} notes
+ * @property {FileCloud['file']['table']} [preview]
  */
 
 /**
@@ -39,13 +46,11 @@ import { PointweaveError } from '../engine/errors.js';
  * @typedef {{ positions: Float64Array, starts: Float64Array, of: Uint32Array }} Stations
  */
 
-export class Columns {
+export class PointColumns {
   /** Of positions, normals, colours; then of the attributes. @type {Map<string, Column>} */
   #columns = new Map();
-  /** @type {Column[]} */
-  #attributes = [];
-  /** @type {string[]} */
-  #names = [];
+  /** @type {Map<string, Column>} */
+  #attributes = new Map();
   points = 0;
 
   /**
@@ -53,36 +58,65 @@ export class Columns {
    * @param {number} expected points in all, as far as can be told
    */
   add({ positions, normals, colors, names, values }, expected) {
+    const before = this.points;
     this.points += positions.length / 3;
     this.#append('positions', positions, 3 * expected);
     if (normals) this.#append('normals', normals, 3 * expected);
     if (colors) this.#append('colors', colors, 3 * expected);
-    this.#names = names;
-    values.forEach((array, i) => (this.#attributes[i] ??= new Column(array)).append(array, expected));
+    values.forEach((array, i) => {
+      let column = this.#attributes.get(names[i]);
+      if (!column) {
+        this.#attributes.set(names[i], (column = new Column(array)));
+        // What comes later than the first points was 0 before.
+        if (before > 0) column.append(convert(Float32Array, before), expected);
+      }
+      column.append(array, expected);
+    });
   }
 
   /**
    * @param {Summary} summary
    * @returns {FileCloud}
    */
-  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, stations, up, seenFromAbove, unit, crs, sampled, missing }) {
-    const positions = this.#take('positions') ?? new Float32Array(0);
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, leftOut, skipped, columns, notes, preview, stations, up, seenFromAbove, unit, crs, sampled, missing, ...rest }) {
+    let positions = this.#take('positions') ?? new Float32Array(0);
+    const out = leftOutOf(/** @type {Float32Array | Float64Array} */ (positions), leftOut);
+    /** @template {Values} T @param {T} values */
+    const left = (values, each = 3) => (out ? kept(values, out, each) : values);
+    const views = stations && viewpointsOf(stations, positions.length / 3);
+    positions = left(positions);
     const normals = this.#take('normals');
     const colors = hasColors ? this.#take('colors') : undefined;
-    const attributes = this.#names.map((name, i) => [name, this.#attributes[i].take()]);
+    const attributes = rest.attributes.map((name) => [name, left(this.#attribute(name), 1)]);
+    const why = { ...skipped };
+    for (const [key, count] of Object.entries(out?.skipped ?? {})) why[key] = (why[key] ?? 0) + count;
     return /** @type {FileCloud} */ ({
       positions: narrow && positions instanceof Float64Array ? convert(Float32Array, positions) : positions,
-      ...(normals && hasNormals && { normals }),
-      ...(colors && { colors: colors instanceof Uint8Array ? colors : toBytes(/** @type {Float32Array} */ (colors), colorScale) }),
+      ...(normals && hasNormals && { normals: left(normals) }),
+      ...(colors && { colors: left(colors instanceof Uint8Array ? colors : toBytes(/** @type {Float32Array} */ (colors), colorScale)) }),
       ...(attributes.length > 0 && { attributes: Object.fromEntries(attributes) }),
-      ...(stations && { viewpoints: viewpointsOf(stations, positions.length / 3) }),
+      ...(views && { viewpoints: views.of ? { positions: views.positions, of: left(views.of, 1) } : views }),
       ...(up && { up }),
       ...(seenFromAbove && { seenFromAbove }),
       ...(unit && { unit }),
       ...(crs && { crs }),
       ...(sampled > 0 && { faces }),
-      file: { format, dropped, replaced, faces, ...(sampled > 0 && { sampled }), ...(missing.length > 0 && { missing }) },
+      ...(columns.length > 0 && { columns }),
+      skipped: why,
+      file: {
+        format, dropped, replaced, faces, notes,
+        ...(sampled > 0 && { sampled }),
+        ...(missing.length > 0 && { missing }),
+        ...(preview && { table: preview }),
+      },
     });
+  }
+
+  /** @param {string} name */
+  #attribute(name) {
+    const column = this.#attributes.get(name);
+    this.#attributes.delete(name);
+    return column?.take() ?? new Float32Array(this.points);
   }
 
   /** @param {string} name @param {Values} values @param {number} expected */

@@ -1,27 +1,42 @@
 /** A file to a cloud, slice by slice, by the wasm that has its reader. */
-import { Columns } from './point-columns.js';
+import { PointColumns } from './point-columns.js';
 import { PointweaveError } from '../engine/errors.js';
 
 /** @import { FileCloud, Format, Progress } from '../types.js' */
 /** @import { Block, Summary } from './point-columns.js' */
 /** @import { Request, WasmBuild } from '../engine/core.js' */
-/** @import { Slices } from './byte-source.js' */
+/** @import { ByteSource } from './byte-source.js' */
 
-/** The builds that hold readers alone. @typedef {Extract<WasmBuild, 'files' | 'las' | 'e57'>} Reader */
+/** The builds that hold readers alone. @typedef {Extract<WasmBuild, 'files' | 'las' | 'e57' | 'packed'>} Reader */
 
-/** How the files start whose reader is a build of its own. @type {[string, Reader][]} */
-const READERS = [['LASF', 'las'], ['ASTM-E57', 'e57']];
+/**
+ * What a caller says of a file.
+ * @typedef {{ name?: string, format?: Format, columns?: string[], delimiter?: string, decimal?: string, skip?: number, sentinels?: 'drop' | 'keep', faces?: 'sample' | 'vertices' }} ReadingOptions
+ */
+
+/** How the files start whose reader is a build of its own, and the formats' names. @type {[string, Format, Reader][]} */
+const READERS = [
+  ['LASF', 'las', 'las'],
+  ['ASTM-E57', 'e57', 'e57'],
+  ['glTF', 'glb', 'packed'],
+  ['PK', '3mf', 'packed'],
+  ['NGSP', 'spz', 'packed'],
+  ['II*\0', 'tif', 'packed'],
+  ['MM\0*', 'tif', 'packed'],
+  ['II+\0', 'tif', 'packed'],
+  ['MM\0+', 'tif', 'packed'],
+];
 
 /**
  * The build that reads a file: by the format that the caller says, else by how the file starts.
- * @param {Slices} file
+ * @param {ByteSource} file
  * @param {Format} [format]
  * @returns {Promise<Reader>}
  */
 export async function readerOf(file, format) {
   const start = String.fromCharCode(...(await file.read(0)).subarray(0, 8));
   const found = READERS.find(([magic, name]) => (format ? name === format : start.startsWith(magic)));
-  return found?.[1] ?? 'files';
+  return found?.[2] ?? 'files';
 }
 
 /**
@@ -33,14 +48,14 @@ export async function readerOf(file, format) {
 
 /**
  * @param {(request: Request) => Promise<any>} ask one request of the wasm that has the reader
- * @param {Slices} file
- * @param {{ name?: string, format?: Format }} options
+ * @param {ByteSource} file
+ * @param {ReadingOptions} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
  * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
 export async function readFile(ask, file, options, { signal, onProgress }, { find, decode }) {
-  const columns = new Columns();
+  const columns = new PointColumns();
   let told = 0;
   /** @param {number} share */
   const tell = (share) => {
@@ -89,11 +104,11 @@ export async function readFile(ask, file, options, { signal, onProgress }, { fin
 /**
  * What went wrong in a reader's wasm. That it trapped, at data which it did not expect, says that they are damaged.
  * @param {unknown} error
- * @param {Reader} reader
+ * @param {Reader | 'pictures'} reader
  */
 export function readerError(error, reader) {
-  if (!(error instanceof PointweaveError) || error.code !== 'internal' || reader === 'files') return error;
-  const expected = `the content of ${reader === 'las' ? 'a LAS or LAZ' : 'an E57'} file`;
+  if (!(error instanceof PointweaveError) || error.code !== 'internal' || reader === 'files' || reader === 'pictures') return error;
+  const expected = `the content of ${{ las: 'a LAS or LAZ', e57: 'an E57', packed: 'a packed' }[reader]} file`;
   const found = 'data that cannot be taken apart';
   return new PointweaveError({ code: 'bad-file', message: `bad ${reader.toUpperCase()} file: expected ${expected}, found ${found} (${error.message})`, expected, found });
 }

@@ -2,7 +2,7 @@
 
 use super::raw_cloud::Positions;
 use super::sentinels::{LeftOut, Why};
-use crate::cloud::Attribute;
+use crate::cloud::{Attribute, Viewpoints};
 
 /// Rows as arrays of one type each: all of a file's, or those that came since the last block.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,11 @@ pub struct Verdict {
 
 impl Block {
     /// Leaves out points that are none; how many had no data, and how many were no returns.
-    pub(super) fn leave_out(&mut self, left_out: &LeftOut) -> [u64; 2] {
+    pub(super) fn leave_out(
+        &mut self,
+        left_out: &LeftOut,
+        viewpoints: &mut Option<Viewpoints>,
+    ) -> [u64; 2] {
         let mut counts = [0; 2];
         if left_out.is_empty() {
             return counts;
@@ -64,6 +68,9 @@ impl Block {
         match &mut self.positions {
             Positions::F32(values) => retain(values, 3, &keep),
             Positions::F64(values) => retain(values, 3, &keep),
+        }
+        if let Some(of) = viewpoints.as_mut().and_then(|all| all.of.as_mut()) {
+            retain(of, 1, &keep);
         }
         if let Some(normals) = &mut self.normals {
             retain(normals, 3, &keep);

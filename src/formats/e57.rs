@@ -205,10 +205,6 @@ fn read_scan(
         } else {
             None
         };
-        if let Some(Transform { translation, .. }) = &scan.transform {
-            let sensor = [translation.x, translation.y, translation.z];
-            table.seen_from(Some(sensor));
-        }
         let mut row = vec![0.0; KNOWN + names.len()];
         for point in points {
             let point = match point {

@@ -107,15 +107,20 @@ impl Format {
         }
     }
 
-    /// Whether its clouds are airborne scans: z is up, and all was seen from above.
+    /// Whether its clouds are airborne scans or grids of heights: z is up, and all was seen from above.
     pub fn is_airborne(self) -> bool {
-        self == Format::Las
+        matches!(self, Format::Las | Format::Grid | Format::Tiff)
     }
 
     /// Which way is up, where the format says it.
     pub fn up(self) -> Option<[f64; 3]> {
         match self {
-            Format::Las | Format::E57 | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
+            Format::Las
+            | Format::E57
+            | Format::Ptx
+            | Format::Grid
+            | Format::Tiff
+            | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
             Format::Glb => Some([0.0, 1.0, 0.0]),
             _ => None,
         }

@@ -22,6 +22,11 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// Whether they say how a table is taken apart.
+    pub(super) fn is_of_a_table(&self) -> bool {
+        self.columns.is_some() || self.delimiter.is_some() || self.decimal.is_some()
+    }
+
     /// # Errors
     /// [`Error::BadOption`].
     pub(super) fn check(&self) -> Result<()> {

@@ -9,15 +9,16 @@
 //! Why not a crate: `pcd-rs` reads through memory maps or whole records with one allocation each, and gives no place
 //! for an error; `pcd_rs` has no wasm32 build without a file system.
 
-mod body;
+mod fields;
 mod picture;
 
-use super::colors::ColorRange;
 use super::input::Input;
+use super::lzf;
 use super::parser::{Parser, Step};
-use super::table::{Columns, Precision, Table};
+use super::table::{Columns, Table};
+use super::text::number;
 use crate::base::error::Result;
-use body::{Body, Encoding, Field, Kind};
+use fields::{Encoding, Field, Kind, columns, packed_color, unpacked, value};
 use picture::Picture;
 
 /// Whether the content starts as a PCD file does: comments, then `VERSION` or `FIELDS`.
@@ -212,42 +213,201 @@ fn viewpoint(values: &[&str]) -> Option<[f64; 3]> {
     is_said.then_some(position)
 }
 
-/// The columns of the rows that [`Body::push`] makes: a value for each field, then red, green, blue where one packs them.
-fn columns(fields: &[Field], encoding: Encoding) -> Option<Columns> {
-    // Fields with several values and padding have names of no meaning, and no attribute is made of them.
-    let name = |(i, field): (usize, &Field)| {
-        if field.count == 1 && field.name != "_" {
-            field.name.clone()
-        } else {
-            format!("\0{i}")
-        }
-    };
-    let mut names: Vec<String> = fields.iter().enumerate().map(name).collect();
-    let packed = packed_color(fields);
-    if let Some(packed) = packed {
-        names[packed] = "\0".into();
-        names.extend(["red", "green", "blue"].map(String::from));
-    }
-    let mut columns = Columns::from_names(&names)?;
-    columns.scalars.retain(|(_, name)| !name.starts_with('\0'));
-    if packed.is_some() {
-        columns.colors = ColorRange::Bytes;
-    }
-    let is_single =
-        |&i: &usize| fields[i].size < 4 || (fields[i].size == 4 && fields[i].kind == Kind::Float);
-    // Text may have more digits than the type that it names.
-    if encoding != Encoding::Ascii && columns.position.iter().all(is_single) {
-        columns.precision = Precision::Single;
-    }
-    Some(columns)
+/// The rows, and how far they have been read.
+struct Body {
+    encoding: Encoding,
+    fields: Vec<Field>,
+    points: u64,
+    columns: Columns,
+    /// The field that packs a colour.
+    color: Option<usize>,
+    row: u64,
+    values: Vec<f64>,
+    viewpoint: Option<[f64; 3]>,
+    /// Of an organised cloud that says no viewpoint.
+    picture: Option<Picture>,
 }
 
-/// The field that packs a colour into four bytes.
-fn packed_color(fields: &[Field]) -> Option<usize> {
-    let packs = |field: &Field| {
-        ["rgb", "rgba"].contains(&field.name.to_lowercase().as_str())
-            && field.size >= 4
-            && field.count == 1
-    };
-    fields.iter().position(packs)
+impl Body {
+    fn row_size(&self) -> usize {
+        self.fields
+            .iter()
+            .map(|field| field.size * field.count)
+            .sum()
+    }
+
+    /// How many rows the file has room for, unless they are packed.
+    fn most_rows(&self, input: &Input) -> Option<u64> {
+        let row = match self.encoding {
+            Encoding::Ascii => 2 * self.fields.len(),
+            Encoding::Binary => self.row_size(),
+            Encoding::Compressed => return None,
+        };
+        Some(self.points.min((input.left() + 1) / row.max(1) as u64))
+    }
+
+    fn read(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        let step = match self.encoding {
+            Encoding::Ascii => self.read_text(input, table),
+            Encoding::Binary => self.read_rows(input, table),
+            Encoding::Compressed => self.read_columns(input, table),
+        }?;
+        let is_picture = self.picture.as_ref().is_some_and(Picture::is_of_the_origin);
+        let origin = is_picture.then_some([0.0; 3]);
+        if let (Step::Done, Some(viewpoint)) = (step, self.viewpoint.or(origin)) {
+            table.stations.begin(0, Some(viewpoint));
+        }
+        Ok(step)
+    }
+
+    fn read_text(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        while self.row < self.points {
+            let line = match input.line()? {
+                Some(line) if line.trim_ascii().is_empty() => continue,
+                Some(line) => line,
+                None if input.last => {
+                    return Err(input.no_line(&format!("one of {} points", self.points)));
+                }
+                None => return Ok(Step::More),
+            };
+            // Some programs write commas.
+            let mut words = line
+                .split(|b| b.is_ascii_whitespace() || *b == b',')
+                .filter(|word| !word.is_empty());
+            self.values.clear();
+            let mut packed = None;
+            for (i, field) in self.fields.iter().enumerate() {
+                let mut first = 0.0;
+                for part in 0..field.count {
+                    let Some(word) = words.next() else {
+                        let all: usize = self.fields.iter().map(|field| field.count).sum();
+                        return Err(input.bad_line(&format!("{all} values"), line));
+                    };
+                    let value = number(word).ok_or_else(|| input.bad_line("a number", word))?;
+                    if part == 0 {
+                        first = value;
+                    }
+                }
+                if self.color == Some(i) {
+                    packed = Some(unpacked(field, first, (first as f32).to_bits()));
+                }
+                self.values.push(first);
+            }
+            if let Some(extra) = words.next() {
+                return Err(input.bad_line("the end of the line", extra));
+            }
+            self.push(packed, table);
+        }
+        Ok(Step::Done)
+    }
+
+    fn read_rows(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        let size = self.row_size();
+        while self.row < self.points {
+            let Some(row) = input.take(size) else {
+                return if input.last {
+                    let missing = (self.points - self.row).saturating_mul(size as u64);
+                    Err(input.no_bytes(missing, &format!("{} points", self.points)))
+                } else {
+                    Ok(Step::More)
+                };
+            };
+            let mut at = 0;
+            self.push_bytes(
+                |field| {
+                    let here = at;
+                    at += field.size * field.count;
+                    &row[here..here + field.size * field.count]
+                },
+                table,
+            );
+        }
+        Ok(Step::Done)
+    }
+
+    /// All of the first field's values, then all of the second's …
+    fn read_columns(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
+        if !input.last {
+            return Ok(Step::More);
+        }
+        let start = input.place.byte;
+        let Some(&[a, b, c, d, e, f, g, h]) = input.take(8) else {
+            return Err(input.no_bytes(8, "the sizes of the packed points"));
+        };
+        let (packed, unpacked) = (
+            u32::from_le_bytes([a, b, c, d]),
+            u32::from_le_bytes([e, f, g, h]),
+        );
+        let size = self.row_size();
+        if Some(u64::from(unpacked)) != self.points.checked_mul(size as u64) {
+            let expected = format!("{} points of {size} bytes each", self.points);
+            return Err(input.bad_byte(start + 4, &expected, format!("{unpacked} bytes in all")));
+        }
+        let Some(bytes) = input.take(packed as usize) else {
+            return Err(input.no_bytes(u64::from(packed), "packed points"));
+        };
+        let at_fault = |at: usize| {
+            input.bad_byte(
+                start + 8 + at as u64,
+                "points packed by LZF",
+                "bytes that do not unpack",
+            )
+        };
+        let columns = lzf::unpack(bytes, unpacked as usize).map_err(at_fault)?;
+        if columns.len() != unpacked as usize {
+            return Err(input.bad_byte(
+                start + 4,
+                &format!("{unpacked} bytes once unpacked"),
+                columns.len().to_string(),
+            ));
+        }
+        for row in 0..self.points as usize {
+            let mut column = 0;
+            self.push_bytes(
+                |field| {
+                    let width = field.size * field.count;
+                    let here = column + row * width;
+                    column += width * (columns.len() / size);
+                    &columns[here..here + width]
+                },
+                table,
+            );
+        }
+        Ok(Step::Done)
+    }
+
+    /// A row from the bytes of each field, in order.
+    fn push_bytes<'a>(&mut self, mut next: impl FnMut(&Field) -> &'a [u8], table: &mut Table) {
+        self.values.clear();
+        let mut packed = None;
+        for (i, field) in self.fields.iter().enumerate() {
+            let bytes = next(field);
+            let first = if field.count == 0 {
+                0.0
+            } else {
+                value(field, bytes)
+            };
+            if self.color == Some(i) {
+                packed = Some(match *bytes {
+                    [a, b, c, d] => unpacked(field, first, u32::from_le_bytes([a, b, c, d])),
+                    _ => unpacked(field, first, (first as f32).to_bits()),
+                });
+            }
+            self.values.push(first);
+        }
+        self.push(packed, table);
+    }
+
+    /// Puts the values into the table, and the colour after them.
+    fn push(&mut self, packed: Option<u32>, table: &mut Table) {
+        if let Some(packed) = packed {
+            let [blue, green, red, _] = packed.to_le_bytes();
+            self.values.extend([red, green, blue].map(f64::from));
+        }
+        if let Some(picture) = &mut self.picture {
+            picture.push(self.columns.position.map(|column| self.values[column]));
+        }
+        table.push(&self.values);
+        self.row += 1;
+    }
 }

@@ -112,6 +112,7 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    /// Where the rows were seen from.
     pub(super) stations: Stations,
     /// Rows left out because a coordinate is not finite.
     pub(super) dropped: usize,
@@ -314,7 +315,8 @@ impl Table {
     pub(super) fn finish(mut self, keep: bool) -> RawCloud {
         let verdict = self.verdict(keep);
         let mut block = self.take_block();
-        let [no_data, no_return] = block.leave_out(&verdict.left_out);
+        let mut viewpoints = self.stations.viewpoints(self.rows as usize);
+        let [no_data, no_return] = block.leave_out(&verdict.left_out, &mut viewpoints);
         let Block {
             positions,
             normals,
@@ -340,9 +342,9 @@ impl Table {
                     .collect(),
             });
         cloud.attributes = attributes;
-        cloud.viewpoints = self.stations.viewpoints(cloud.points());
         cloud.dropped = self.dropped + self.invalid;
         cloud.skipped = self.skipped([no_data, no_return]);
+        cloud.viewpoints = viewpoints;
         cloud.replaced = self.replaced;
         cloud
     }

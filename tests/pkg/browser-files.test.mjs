@@ -41,7 +41,7 @@ test('a reader is loaded when a file of its format comes', async (t) => {
       assert.equal(read.shares.at(-1), 1);
       // The engine's own, with its pool, and one for the reader.
       assert.equal(workers, options.worker === false ? 0 : options.threads === 2 ? 4 : 2);
-      const others = loaded.filter((other) => ['files', 'las', 'e57'].includes(other) && other !== module);
+      const others = loaded.filter((other) => ['files', 'las', 'e57', 'packed'].includes(other) && other !== module);
       assert.deepEqual(others, [], `${name} needs ${module} alone`);
       assert.ok(options.threads === 2 || options.worker === false || loaded.includes(module), `${name}: ${loaded}`);
     }

@@ -102,14 +102,14 @@ test('--json prints the report and nothing else', async (t) => {
   const alone = await good(path, ['reduce', 'scan.ply', '--json', '--ratio', '0.1']);
   assert.equal(JSON.parse(alone.stdout).outputPoints, 150);
   const info = await good(path, ['inspect', 'scan.ply', '--json']);
-  assert.deepEqual(JSON.parse(info.stdout), { ...(await inspect(cloud)), file: cloud.file });
+  assert.deepEqual(JSON.parse(info.stdout), { ...(await inspect(cloud)), skipped: cloud.skipped, file: cloud.file });
 });
 
 test('inspect tells it in words', async (t) => {
   const far = await good(folder(t), ['inspect', '-'], '4512345.125 -543210.5 100\n4512346.125 -543211.5 101.0009766\n');
   assert.match(String(far.stdout), /lowest corner +4512345\.125 -543211\.5 100\n.*highest corner +4512346\.125 -543210\.5 101\.000977\n/);
   const { stdout } = await good(folder(t), ['inspect', 'scan.ply']);
-  for (const said of [/^scan\.ply\n/, /points +1,500\n/, /not finite +0\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
+  for (const said of [/^scan\.ply\n/, /points +1,500\n/, /left out +none\n/, /also has +colours\n/, /spacing +0\.\d+\n/]) assert.match(String(stdout), said);
 });
 
 test('what of a file is no point is told', async (t) => {
@@ -117,10 +117,10 @@ test('what of a file is no point is told', async (t) => {
   const header = (count) => `ply\nformat ascii 1.0\nelement vertex ${count}\nproperty float x\nproperty float y\nproperty float z\nproperty float value\n`;
   writeFileSync(join(path, 'some.ply'), `${header(5)}element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 nan\n0 1 0 1\nnan 0 0 1\n0 0 1 1\n3 0 1 2\n`);
   writeFileSync(join(path, 'none.ply'), `${header(2)}end_header\n0 inf 0 1\nnan 0 0 1\n`);
-  const { stdout } = await good(path, ['inspect', 'some.ply']);
-  for (const said of [/points +4\n/, /not finite +1 more, left out\n/, /of that +1 not finite, taken for 0\n/, /faces +1, not read\n/]) assert.match(String(stdout), said);
-  const { stderr } = await good(path, ['reduce', 'some.ply', '-o', 'one.ply', '--count', '1']);
-  assert.match(stderr, /4 → 1 point, .* s; 1 point that is not finite left out\n$/);
+  const { stdout } = await good(path, ['inspect', 'some.ply', '--faces', 'vertices']);
+  for (const said of [/points +4\n/, /left out +1 not finite\n/, /of that +1 not finite, taken for 0\n/, /faces +1, not read\n/]) assert.match(String(stdout), said);
+  const { stderr } = await good(path, ['reduce', 'some.ply', '-o', 'one.ply', '--count', '1', '--faces', 'vertices']);
+  assert.match(stderr, /4 → 1 point, .* s; left out: 1 not finite\n$/);
   const none = await run(path, ['reconstruct', 'none.ply', '-o', 'mesh.ply']);
   assert.deepEqual([none.code, none.stderr], [1, 'pointweave: none.ply: the file has 2 points, none of them finite\n']);
 });

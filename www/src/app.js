@@ -14,6 +14,8 @@ import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
 import { Session } from './session/session.js';
+import { ColumnChooser } from './session/column-chooser.js';
+import { Standing } from './controls/standing.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
 import { meaningOf } from './controls/targets.js';
@@ -24,16 +26,21 @@ import { meaningOf } from './controls/targets.js';
  * @import { SampleName } from './controls/samples.js'
  */
 
+/** @type {Record<import('pointweave/viewer').Axis, [number, number, number]>} */
+const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y': [0, -1, 0], '-z': [0, 0, -1] };
+
 /** Puts the session, the picture and the controls together. */
 export class App {
   #root = byId('app', HTMLElement);
   #session = new Session();
-  #look = new Look(this.#root, () => this.#noteAddress());
+  #look = new Look(this.#root, () => this.#noteAddress(), () => this.#stand({ up: this.#look.upright }));
+  #standing = new Standing((stand) => this.#stand(stand));
   #numbers = new Numbers();
   #side = new SideCard((triangle) => this.#session.flip(triangle), (chosen) => this.#look.choosePiece(chosen));
   #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
+  #columns = new ColumnChooser();
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
   #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
@@ -58,8 +65,11 @@ export class App {
 
   #openFiles(/** @type {File[]} */ files) {
     if (!files.length) return;
-    if (files.length > 1) announce(`One scan at a time: opening ${files[0].name}`);
-    return this.#session.openFile(files[0]);
+    // A mesh may name its material library and pictures, which come along.
+    const first = files.find((file) => !/\.(mtl|png|jpe?g|webp)$/i.test(file.name)) ?? files[0];
+    const beside = files.filter((file) => file !== first);
+    if (beside.length > 0) announce(`One scan at a time: opening ${first.name}`);
+    return this.#session.openFile(first, { beside });
   }
 
   #listenToSession() {
@@ -112,13 +122,21 @@ export class App {
     document.title = `${scan.title} · Pointweave`;
     byId('caption-title', HTMLElement).textContent = scan.title;
     byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
-    byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
+    this.#showSize(scan);
     this.#look.opened(scan);
+    this.#standing.show({ up: this.#look.upright, unit: scan.cloud.unit });
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
+    this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
+  }
+
+  /** Lets a person say what the columns of a table are. */
+  #offerColumns(/** @type {Scan} */ { given, cloud }) {
+    const { file, columns } = cloud;
+    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#session.openFile(given, { columns: chosen }));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -140,6 +158,22 @@ export class App {
     this.#controls.show(this.#session.target, outcome.scan.count);
     this.#noteAddress();
     announce(piece ? 'The piece was flipped' : 'The mesh was flipped');
+  }
+
+  /** Which way is up, and the unit, as a person said it: of the picture, the scan and whatever is saved of it. */
+  #stand(/** @type {import('./controls/standing.js').Stand} */ { up, unit }) {
+    const { scan, outcome } = this.#session;
+    if (!scan) return;
+    if (up) this.#look.upright = up;
+    this.#session.stand({ up: up && AXES[up], unit });
+    this.#standing.show({ up: this.#look.upright, unit: scan.cloud.unit });
+    this.#showSize(scan);
+    this.#numbers.unit = scan.cloud.unit;
+    if (outcome) this.#saving.offer(outcome);
+  }
+
+  #showSize(/** @type {Scan} */ { frame, cloud: { unit } }) {
+    byId('caption-size', HTMLElement).textContent = `${frame.size.map(format.length).join(' × ')} ${unit ?? ''}`.trim();
   }
 
   get #flipped() {
@@ -198,8 +232,9 @@ export class App {
 
 /** What a scan holds, and what of its file was no point. */
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
-  const { dropped = 0, faces = 0 } = cloud.file ?? {};
-  const points = format.points(count) + (faces ? `, the corners of ${format.count(faces)} faces` : '');
-  const rest = dropped ? `, ${format.count(dropped)} without a place left out` : '';
+  const { faces = 0, sampled = 0 } = cloud.file ?? {};
+  const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
+  const points = format.points(count) + (sampled ? `, taken from ${format.count(faces)} faces` : faces ? `, the corners of ${format.count(faces)} faces` : '');
+  const rest = out ? `, ${format.count(out)} without a place left out` : '';
   return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
 }

@@ -189,7 +189,8 @@ impl Header {
             f64::from(color.blue),
         ]);
         row.extend(fields::values(&point, start.unwrap_or(0.0)));
-        let extra = |extra: &Extra| extra.value(&point.extra_bytes);
+        let extra_bytes = &record[usize::from(self.format.len())..];
+        let extra = |extra: &Extra| extra.value(extra_bytes);
         row.extend(self.extras.iter().map(extra));
         table.push(row);
     }

@@ -1,4 +1,4 @@
-//! GPS times in chunks of LASzip 2, which stand between the fields that are wanted and must be decoded to get past them.
+//! GPS times in chunks of LASzip 2.
 //!
 //! The decoder of the crate `laz` (0.13.0), as LASzip's own, calls itself whenever the stream switches to another of four
 //! sequences of times. What a writer makes switches once a point; what was damaged may switch a million times, and overflow
@@ -30,7 +30,7 @@ struct Sequence {
     extremes: u8,
 }
 
-/// Decodes the times and keeps none: the field's bytes stay as they are.
+/// Decodes the times.
 pub(super) struct Times {
     multiple: ArithmeticModel,
     after_zero: ArithmeticModel,
@@ -61,14 +61,19 @@ impl<R: Read> FieldDecompressor<R> for Times {
         8
     }
 
-    fn decompress_first(&mut self, source: &mut R, _: &mut [u8]) -> Result<()> {
+    fn decompress_first(&mut self, source: &mut R, field: &mut [u8]) -> Result<()> {
         let mut bytes = [0; 8];
         source.read_exact(&mut bytes)?;
         self.sequences[0].time = i64::from_le_bytes(bytes);
+        self.keep(field);
         Ok(())
     }
 
-    fn decompress_with(&mut self, decoder: &mut ArithmeticDecoder<R>, _: &mut [u8]) -> Result<()> {
+    fn decompress_with(
+        &mut self,
+        decoder: &mut ArithmeticDecoder<R>,
+        field: &mut [u8],
+    ) -> Result<()> {
         for _ in 0..=self.sequences.len() {
             let switch = if self.sequences[self.last].difference == 0 {
                 self.after_zero(decoder)?
@@ -77,7 +82,10 @@ impl<R: Read> FieldDecompressor<R> for Times {
             };
             match switch {
                 Some(by) => self.last = (self.last + by) & 3,
-                None => return Ok(()),
+                None => {
+                    self.keep(field);
+                    return Ok(());
+                }
             }
         }
         Err(Error::new(
@@ -88,6 +96,13 @@ impl<R: Read> FieldDecompressor<R> for Times {
 }
 
 impl Times {
+    /// Puts the time into the field's bytes.
+    fn keep(&self, field: &mut [u8]) {
+        if let Some(field) = field.first_chunk_mut() {
+            *field = self.sequences[self.last].time.to_le_bytes();
+        }
+    }
+
     /// A time after one that was the same as that before; or by how many sequences to switch.
     fn after_zero<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> Result<Option<usize>> {
         match decoder.decode_symbol(&mut self.after_zero)? {

@@ -1,9 +1,64 @@
-//! The first rows as columns of values.
+//! The first lines of a table: the dialect that suits them, and their values column by column.
 
+use super::super::options::ReadOptions;
 use super::super::text::decoded;
-use super::dialect::{Dialect, Value};
+use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
 use super::guess::Column;
-use super::line::Numbered;
+use super::line::{Numbered, is_comment};
+
+/// The dialect in which most lines are rows, with the fewest values that are no numbers and the fewest widths.
+pub(super) fn dialect_of(said: &[&Numbered], options: &ReadOptions) -> Dialect {
+    let asked = |dialect: &Dialect| {
+        let comma = options
+            .decimal
+            .is_none_or(|mark| dialect.decimal_comma == (mark == ','));
+        let delimiter = match options.delimiter {
+            None => true,
+            Some(' ') => dialect.delimiter == Delimiter::Blanks,
+            Some(mark) => dialect.delimiter == Delimiter::Mark(mark as u8),
+        };
+        comma && delimiter
+    };
+    let own = options.delimiter.map(|mark| Dialect {
+        delimiter: if mark == ' ' {
+            Delimiter::Blanks
+        } else {
+            Delimiter::Mark(mark as u8)
+        },
+        decimal_comma: options.decimal == Some(','),
+    });
+    let candidates = DIALECTS.into_iter().filter(asked);
+    let mut best: Option<((usize, usize, usize), Dialect)> = None;
+    for dialect in candidates.chain(own) {
+        let score = score(said, dialect);
+        if best.is_none_or(|(most, _)| score > most) {
+            best = Some((score, dialect));
+        }
+    }
+    best.map_or(DIALECTS[8], |(_, dialect)| dialect)
+}
+
+/// Rows, numbers among their values in thousandths, and rows as wide as the first.
+fn score(said: &[&Numbered], dialect: Dialect) -> (usize, usize, usize) {
+    let (mut rows, mut numbers, mut values, mut alike) = (0, 0, 0, 0);
+    let mut first = None;
+    for line in said.iter().filter(|line| !is_comment(&line.bytes)) {
+        let (mut here, mut count, mut said) = (0, 0, 0);
+        for token in dialect.split(&line.bytes) {
+            count += 1;
+            let value = dialect.value(token);
+            here += usize::from(matches!(value, Value::Number(_) | Value::Hex(_)));
+            said += usize::from(value != Value::Empty);
+        }
+        if here >= 3 {
+            rows += 1;
+            numbers += here;
+            values += said;
+            alike += usize::from(*first.get_or_insert(count) == count);
+        }
+    }
+    (rows, 1000 * numbers / values.max(1), alike)
+}
 
 /// The first rows.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! What the lines before the rows call the columns.
+//! What the lines before the rows of a table call its columns.
 
 use super::super::text::decoded;
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
@@ -6,6 +6,18 @@ use super::grid::Grid;
 use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
 use super::names;
 
+/// A header that numbers its columns, as pandas writes it: `,0,1,2`.
+pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {
+    let Some(line) = lines.first() else {
+        return false;
+    };
+    let mut tokens = dialect.split(&line.bytes).enumerate();
+    lines.len() > 1
+        && tokens.next().is_some_and(|(_, first)| first.is_empty())
+        && tokens.all(|(i, token)| dialect.value(token) == Value::Number(i as f64 - 1.0))
+}
+
+/// What the lines before the rows say.
 pub(super) enum Header {
     Names {
         roles: Vec<String>,
@@ -138,15 +150,4 @@ fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
         }
     }
     names
-}
-
-/// A header that numbers its columns, as pandas writes it: `,0,1,2`.
-pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {
-    let Some(line) = lines.first() else {
-        return false;
-    };
-    let mut tokens = dialect.split(&line.bytes).enumerate();
-    lines.len() > 1
-        && tokens.next().is_some_and(|(_, first)| first.is_empty())
-        && tokens.all(|(i, token)| dialect.value(token) == Value::Number(i as f64 - 1.0))
 }

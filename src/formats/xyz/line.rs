@@ -3,6 +3,34 @@
 use super::super::text::quote;
 use super::dialect::{Dialect, Value};
 
+/// A line of the file.
+pub(super) struct Numbered {
+    pub(super) number: u64,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// Why there is no plan.
+pub(super) enum NoPlan {
+    /// Nothing in the lines is a row or names columns.
+    Nothing,
+    /// A line is wrong.
+    Line {
+        number: u64,
+        expected: String,
+        found: String,
+    },
+}
+
+impl NoPlan {
+    pub(super) fn line(line: &Numbered, expected: impl Into<String>) -> NoPlan {
+        NoPlan::Line {
+            number: line.number,
+            expected: expected.into(),
+            found: quote(&line.bytes),
+        }
+    }
+}
+
 pub(super) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark))
@@ -41,33 +69,5 @@ pub(super) fn line_of(line: &[u8], dialect: Dialect) -> Line {
         }
         _ if numbers >= 3 => Line::Row,
         _ => Line::Other,
-    }
-}
-
-/// A line of the file.
-pub(super) struct Numbered {
-    pub(super) number: u64,
-    pub(super) bytes: Vec<u8>,
-}
-
-/// Why there is no plan.
-pub(super) enum NoPlan {
-    /// Nothing in the lines is a row or names columns.
-    Nothing,
-    /// A line is wrong.
-    Line {
-        number: u64,
-        expected: String,
-        found: String,
-    },
-}
-
-impl NoPlan {
-    pub(super) fn line(line: &Numbered, expected: impl Into<String>) -> NoPlan {
-        NoPlan::Line {
-            number: line.number,
-            expected: expected.into(),
-            found: quote(&line.bytes),
-        }
     }
 }

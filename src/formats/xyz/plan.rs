@@ -5,11 +5,11 @@ use super::super::input::Input;
 use super::super::options::ReadOptions;
 use super::super::preview::Preview;
 use super::super::table::Columns;
-use super::dialect::{DIALECTS, Delimiter, Dialect, Value, hex};
-use super::grid::Grid;
+use super::dialect::{Dialect, Value, hex};
+use super::grid::{Grid, dialect_of};
 use super::guess::{Column, guess, is_colmap};
 use super::header::{Header, header, header_names, is_header_of_numbers};
-use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
+use super::line::{Line, NoPlan, Numbered, line_of};
 use super::names;
 use crate::base::error::{Error, Result};
 
@@ -134,6 +134,18 @@ impl Plan {
                     || is_small_packed(column)
             })
         });
+        if let Some(own) = roles
+            .iter()
+            .position(|role| role == "rgb")
+            .filter(|_| packed.is_none())
+        {
+            let name = names.get(own).map_or("", |name| name.trim());
+            roles[own] = if name.is_empty() {
+                format!("column{}", own + 1)
+            } else {
+                name.into()
+            };
+        }
         let mut all: Vec<String> = roles.clone();
         if packed.is_some() {
             all.extend(["red", "green", "blue"].map(String::from));
@@ -234,70 +246,29 @@ fn is_said(line: &[u8]) -> bool {
     line.iter().any(|b| !b.is_ascii_whitespace())
 }
 
-/// The dialect in which most lines are rows, with the fewest values that are no numbers and the fewest widths.
-fn dialect_of(said: &[&Numbered], options: &ReadOptions) -> Dialect {
-    let asked = |dialect: &Dialect| {
-        let comma = options
-            .decimal
-            .is_none_or(|mark| dialect.decimal_comma == (mark == ','));
-        let delimiter = match options.delimiter {
-            None => true,
-            Some(' ') => dialect.delimiter == Delimiter::Blanks,
-            Some(mark) => dialect.delimiter == Delimiter::Mark(mark as u8),
-        };
-        comma && delimiter
-    };
-    let own = options.delimiter.map(|mark| Dialect {
-        delimiter: if mark == ' ' {
-            Delimiter::Blanks
-        } else {
-            Delimiter::Mark(mark as u8)
-        },
-        decimal_comma: options.decimal == Some(','),
-    });
-    let candidates = DIALECTS.into_iter().filter(asked);
-    let mut best: Option<((usize, usize, usize), Dialect)> = None;
-    for dialect in candidates.chain(own) {
-        let score = score(said, dialect);
-        if best.is_none_or(|(most, _)| score > most) {
-            best = Some((score, dialect));
-        }
-    }
-    best.map_or(DIALECTS[8], |(_, dialect)| dialect)
-}
-
-/// Rows, numbers among their values in thousandths, and rows as wide as the first.
-fn score(said: &[&Numbered], dialect: Dialect) -> (usize, usize, usize) {
-    let (mut rows, mut numbers, mut values, mut alike) = (0, 0, 0, 0);
-    let mut first = None;
-    for line in said.iter().filter(|line| !is_comment(&line.bytes)) {
-        let (mut here, mut count) = (0, 0);
-        for token in dialect.split(&line.bytes) {
-            count += 1;
-            let value = dialect.value(token);
-            here += usize::from(matches!(value, Value::Number(_) | Value::Hex(_)));
-            values += usize::from(value != Value::Empty);
-        }
-        if here >= 3 {
-            rows += 1;
-            numbers += here;
-            alike += usize::from(*first.get_or_insert(count) == count);
-        }
-    }
-    (rows, 1000 * numbers / values.max(1), alike)
-}
-
-/// Whether the lines can be rows: the first that says something is one, counts them, or names x, y and z.
+/// Whether the lines can be rows: the first that says something is one, counts them, or names x, y and z; or a title is above
+/// such names and a row.
 pub(super) fn looks_like(lines: &[Numbered]) -> bool {
+    /// Lines of a title.
+    const MOST: usize = 10;
     let said: Vec<&Numbered> = lines.iter().filter(|line| is_said(&line.bytes)).collect();
     let dialect = dialect_of(&said, &ReadOptions::default());
-    for line in &said {
-        let named = header_names(&[line], dialect, 0).is_some();
+    let named = |line: &&Numbered| header_names(&[line], dialect, 0).is_some();
+    for (i, line) in said.iter().enumerate() {
         match line_of(&line.bytes, dialect) {
-            _ if named => return true,
+            _ if named(line) => return true,
             Line::Nothing => {}
             Line::Count(_) | Line::Row => return true,
-            Line::Other => return is_header_of_numbers(&[line, line], dialect),
+            Line::Other if is_header_of_numbers(&[line, line], dialect) => return true,
+            Line::Other => {
+                let below = &said[i..said.len().min(i + MOST)];
+                let names = below.iter().position(named);
+                let first = |names: usize| said.get(i + names + 1);
+                let row = names
+                    .and_then(first)
+                    .map(|row| line_of(&row.bytes, dialect));
+                return row == Some(Line::Row);
+            }
         }
     }
     false

@@ -32,6 +32,7 @@ const NAMES = { points: 'Scan', reduced: 'Reduced points', mesh: 'Mesh', compare
 export class Look {
   #root;
   #changed;
+  #turned;
   #viewer = openViewer();
   #legend = new Legend();
   #views = byId('views', HTMLFieldSetElement);
@@ -59,10 +60,12 @@ export class Look {
   /**
    * @param {HTMLElement} root  told the view, for styles
    * @param {() => void} changed  another view or other colours
+   * @param {() => void} turned  another side is up
    */
-  constructor(root, changed) {
+  constructor(root, changed, turned) {
     this.#root = root;
     this.#changed = changed;
+    this.#turned = turned;
     const viewer = this.#viewer;
     byId('no-webgl', HTMLElement).hidden = Boolean(viewer);
     this.#paints.append(...PAINTS.map((name) => paintChoice(name, WORDS.names[name])));
@@ -138,6 +141,7 @@ export class Look {
       { key: '+', also: ['='], shown: '+ −', does: 'Nearer, farther', act: () => viewer?.zoom(1 / 1.2) },
       { key: '-', act: () => viewer?.zoom(1.2) },
       { key: 'Arrows', shown: '← → ↑ ↓', does: 'Turn, while the picture has the focus' },
+      { key: 'Home', does: 'The first look, while the picture has the focus' },
     ];
   }
 
@@ -236,7 +240,17 @@ export class Look {
     const axes = /** @type {Axis[]} */ (Object.keys(UPS));
     const next = axes[(axes.indexOf(this.#viewer.upright) + 1) % axes.length];
     this.#viewer.up = next;
+    this.#turned();
     announce(`${UPS[next]} is up`);
+  }
+
+  /** Which side is up; without a picture, as of most objects. */
+  get upright() {
+    return this.#viewer?.upright ?? 'y';
+  }
+
+  set upright(/** @type {Axis} */ axis) {
+    if (this.#viewer) this.#viewer.up = axis;
   }
 }
 

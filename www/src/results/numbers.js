@@ -18,6 +18,8 @@ export class Numbers {
   #summary = byId('made-summary', HTMLElement);
   #doubt = byId('doubt', HTMLElement);
   #json = '';
+  /** @type {import('pointweave').Unit | undefined} */
+  #unit;
 
   constructor() {
     const copy = byId('copy-json', HTMLButtonElement);
@@ -25,7 +27,8 @@ export class Numbers {
   }
 
   /** A new scan: only its size and its place are known. */
-  opened(/** @type {Scan} */ { count, cloud: { origin } }) {
+  opened(/** @type {Scan} */ { count, cloud: { origin, unit } }) {
+    this.#unit = unit;
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
     this.#set('inputPoints', count, format.count);
     this.#doubt.hidden = true;
@@ -38,6 +41,19 @@ export class Numbers {
     byId('copy-json', HTMLButtonElement).disabled = true;
     this.#stages.replaceChildren();
     this.stale();
+  }
+
+  /** What lengths are said in; those that are shown are said anew. */
+  set unit(/** @type {import('pointweave').Unit | undefined} */ unit) {
+    this.#unit = unit;
+    for (const name of ['errorMean', 'errorRms', 'errorMax']) {
+      const value = this.#box.querySelector(`data[data-number="${name}"]`)?.getAttribute('value');
+      if (value !== null && value !== undefined) this.#set(name, Number(value), (length) => this.#length(length));
+    }
+  }
+
+  #length(/** @type {number} */ value) {
+    return `${format.length(value)}${this.#unit ? ` ${this.#unit}` : ''}`;
   }
 
   /** What is shown belongs to settings that have been changed since. */
@@ -61,7 +77,7 @@ export class Numbers {
     this.#doubt.hidden = !this.#doubt.textContent;
     const { mean, rms, max } = report.distance;
     for (const [name, share] of Object.entries({ errorMean: mean, errorRms: rms, errorMax: max })) {
-      this.#set(name, share * scan.frame.diagonal, format.length);
+      this.#set(name, share * scan.frame.diagonal, (length) => this.#length(length));
       this.#set(`${name}Share`, share, format.percent);
     }
     this.#engine.textContent = engineWords(report);

@@ -15,11 +15,14 @@ const FORMATS = /** @type {Record<What, Record<string, string>>} */ ({
     ply: 'keeps everything',
     obj: 'for modelling programs',
     stl: 'for 3D printing',
+    '3mf': 'for 3D printing, in colour',
   },
   reduced: {
     ply: 'keeps everything',
     glb: 'for the web and viewers',
     xyz: 'plain text',
+    las: 'for surveyors',
+    pcd: 'for robots',
   },
 });
 const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };

@@ -6,14 +6,14 @@ import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 
 /**
- * @import { FileCloud, PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
  * @import { Frame } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
  * @import { Target } from '../controls/settings.js'
  *
  * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
- * @typedef {{ title: string, file: string, model?: SampleName, src?: string }} Source
- * @typedef {PointCloud & Partial<Pick<FileCloud, 'file'>>} Opened
+ * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File }} Source
+ * @typedef {PointCloud & Partial<Pick<FileCloud, 'file' | 'columns' | 'skipped'>>} Opened
  * @typedef {Source & { cloud: Opened, count: number, frame: Frame }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
@@ -57,10 +57,24 @@ export class Session extends EventTarget {
     return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
   }
 
-  /** Reads a file of the person's and makes its mesh. */
-  openFile(/** @type {File} */ file) {
-    const source = { title: file.name, file: stem(file.name) };
-    return this.#open(source, (signal) => read(file, { name: file.name, signal, onProgress: this.#report(signal) }));
+  /**
+   * Reads a file of the person's and makes its mesh.
+   * @param {File} file
+   * @param {{ columns?: string[], beside?: File[] }} [options] what the columns of a table hold; files that a mesh may name
+   */
+  openFile(file, { columns, beside } = {}) {
+    const source = { title: file.name, file: stem(file.name), given: file };
+    return this.#open(source, (signal) => read(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) }));
+  }
+
+  /** Keeps with the scan, and with what was made of it, which way is up and what a coordinate is. */
+  stand(/** @type {{ up?: [number, number, number], unit?: Unit }} */ { up, unit }) {
+    const { cloud } = this.scan ?? {};
+    if (!cloud) return;
+    for (const one of [cloud, this.outcome?.reduced, this.outcome?.mesh]) {
+      if (one && up) one.up = up;
+      if (one && unit) one.unit = unit;
+    }
   }
 
   /** Reads a file beside the page and makes its mesh. */

@@ -1,5 +1,6 @@
-/** Results as people read them. */
+/** Reports and what is known of a cloud, as text for the terminal. */
 import { sideInWords } from '../engine/side.js';
+import { skippedInWords } from '../files/skipped.js';
 
 /** @import { CloudInfo, FileCloud, ReduceReport, SurfaceReport } from '../types.js' */
 
@@ -13,14 +14,15 @@ export const pointsOf = (count) => `${whole(count)} point${count === 1 ? '' : 's
 
 /**
  * @param {ReduceReport | SurfaceReport} report
- * @param {FileCloud['file']} file
+ * @param {FileCloud} cloud
  */
-export function reportLine(report, { dropped }) {
+export function reportLine(report, { skipped }) {
   const { inputPoints, outputPoints, distance, totalMs } = report;
   const mesh = 'triangles' in report ? ` → ${whole(report.triangles)} triangles` : '';
   const error = `${short(100 * distance.rms, 2)} % of the diagonal off (rms)`;
   const side = 'orientation' in report ? `; ${sideInWords(report)}` : '';
-  const left = dropped > 0 ? `; ${pointsOf(dropped)} that ${dropped === 1 ? 'is' : 'are'} not finite left out` : '';
+  const out = skippedInWords(skipped);
+  const left = out ? `; left out: ${out}` : '';
   return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${side}${left}`;
 }
 
@@ -33,7 +35,7 @@ export function doubtLines({ doubts }) {
  * @param {CloudInfo} info
  * @param {FileCloud} cloud
  */
-export function infoLines(info, { colors, normals, attributes = {}, viewpoints, up, seenFromAbove, unit, file }) {
+export function infoLines(info, { colors, normals, attributes = {}, viewpoints, up, seenFromAbove, unit, columns, skipped, file }) {
   // To a millionth of the diagonal, however far away the cloud is.
   const decimals = Math.min(Math.max(6 - Math.floor(Math.log10(info.diagonal || 1)), 0), 20);
   const corner = (/** @type {number[]} */ values) => values.map((x) => Number(x.toFixed(decimals))).join(' ');
@@ -42,9 +44,10 @@ export function infoLines(info, { colors, normals, attributes = {}, viewpoints, 
   const also = [colors && 'colours', normals && 'normals', places && `${places} viewpoint${places === 1 ? '' : 's'}`, ...Object.keys(attributes)].filter(Boolean).join(', ');
   const rows = [
     ['points', whole(info.count)],
-    ['not finite', file.dropped > 0 ? `${whole(file.dropped)} more, left out` : '0'],
+    ['left out', skippedInWords(skipped) || 'none'],
     ['duplicates', whole(info.duplicates)],
     ['also has', also || 'nothing else'],
+    ...(columns ? [['columns', columns.join(' ') + (file.table?.weak ? ' (a guess: --columns says it)' : '')]] : []),
     ...(file.replaced > 0 ? [['of that', `${whole(file.replaced)} not finite, taken for 0`]] : []),
     ...(file.faces > 0 ? [['faces', `${whole(file.faces)}, ${file.sampled ? `${pointsOf(file.sampled)} taken from them` : 'not read'}`]] : []),
     ...(file.missing ? [['not found', file.missing.join(', ')]] : []),
@@ -55,6 +58,7 @@ export function infoLines(info, { colors, normals, attributes = {}, viewpoints, 
     ['diagonal', length(info.diagonal)],
     ['spacing', length(info.spacing)],
     ['noise', length(info.noise)],
+    ...file.notes.map((note) => ['note', note]),
   ];
   return rows.map(([name, value]) => `  ${name.padEnd(14)}  ${value}\n`).join('');
 }
