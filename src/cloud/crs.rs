@@ -1,6 +1,6 @@
 //! The coordinate reference system of a georeferenced cloud, as LAS files describe it, and its unit.
 
-use super::Unit;
+use super::unit::Unit;
 
 /// A coordinate reference system in the words of a file, handed on as it is.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,8 +1,8 @@
 //! What format a file is of.
 
-use super::Format;
+use super::format::Format;
 #[cfg(feature = "files")]
-use super::reading::MARK;
+use super::text::MARK;
 use super::text::quote;
 #[cfg(feature = "files")]
 use super::{grid, obj, off, pcd, ply, ptx, stl, xyz};

@@ -8,7 +8,7 @@
 
 use super::colors::ColorRange;
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Precision, Table};
 use crate::base::error::{Error, Result};
 use ::e57::{CartesianCoordinate, E57Reader, PointCloud, RecordDataType, RecordName, Transform};

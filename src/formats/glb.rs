@@ -13,7 +13,7 @@ mod scene;
 use super::colors::ColorRange;
 use super::faces::{Face, Faces, NONE, srgb};
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use crate::base::error::Result;
 use accessor::Accessor;

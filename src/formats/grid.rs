@@ -3,7 +3,7 @@
 
 use super::input::Input;
 use super::options::ReadOptions;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;

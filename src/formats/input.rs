@@ -1,6 +1,6 @@
 //! A file's bytes as they come, in slices, and the errors that say where in them something is wrong.
 
-use super::Format;
+use super::format::Format;
 use super::text::quote;
 use crate::base::error::{Error, Result};
 

@@ -12,7 +12,7 @@ mod faces;
 
 use super::faces::Faces;
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;

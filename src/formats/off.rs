@@ -3,7 +3,7 @@
 
 use super::faces::{Face, Faces, NONE};
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;

@@ -1,6 +1,6 @@
 //! What a caller can say of a file that does not say it itself.
 
-use super::FaceMode;
+use super::faces::FaceMode;
 use crate::base::error::{Error, Result};
 
 /// How a file is read; what is not given is told from its content.

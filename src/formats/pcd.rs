@@ -14,7 +14,7 @@ mod picture;
 
 use super::input::Input;
 use super::lzf;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::number;
 use crate::base::error::Result;

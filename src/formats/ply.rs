@@ -14,11 +14,11 @@ mod header;
 
 use super::faces::Faces;
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::splats::SPLATS;
 use super::table::Table;
 use super::text::{number, words};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use faces::{Layout, Lists};
 use header::{Element, Encoding, Header, HeaderLines, Property};
 
@@ -331,7 +331,7 @@ fn missing(input: &Input, length: u64, element: &Element) -> Result<bool> {
     Ok(false)
 }
 
-fn no_rows(input: &Input, length: u64, element: &Element) -> crate::Error {
+fn no_rows(input: &Input, length: u64, element: &Element) -> Error {
     input.no_bytes(length, &rows_of(element))
 }
 

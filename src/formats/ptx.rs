@@ -5,7 +5,7 @@
 use super::colors::ColorRange;
 use super::input::Input;
 use super::options::ReadOptions;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;

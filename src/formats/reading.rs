@@ -1,78 +1,25 @@
 //! A file read slice by slice.
 
-use super::Preview;
+use super::block::{Block, Verdict};
+use super::detect;
 use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
+use super::format::Format;
 use super::input::{Input, Place};
 use super::options::ReadOptions;
+use super::parser::{Parser, Step};
+use super::preview::Preview;
+use super::raw_cloud::{Positions, RawCloud};
 use super::sentinels::LeftOut;
-use super::table::{Block, Table, Verdict};
-use super::{Format, Positions, RawCloud, Stations, detect};
+use super::stations::Stations;
+use super::table::Table;
+use super::text::MARK;
 #[cfg(feature = "files")]
 use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
 use crate::cloud::{Crs, Unit};
 
-/// The byte order mark of UTF-8.
-pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
-
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
-
-/// A format's reader. Some take what is at hand and keep what they need; those that jump about in a file take nothing
-/// before all of it is there.
-pub(super) trait Parser {
-    /// Takes what it can from the front of the input, and puts the points into the table, which it makes.
-    fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step>;
-
-    /// Faces that the file has, once all was parsed.
-    fn faces(&self) -> u64 {
-        0
-    }
-
-    /// Whether points may come from faces: those that are there are vertices then, and no points yet.
-    fn waits_for_faces(&self) -> bool {
-        false
-    }
-
-    /// The faces over the rows of the table, once all was parsed and where they are wanted.
-    fn take_faces(&mut self) -> Option<Faces> {
-        None
-    }
-
-    /// The reference system of the coordinates.
-    fn crs(&self) -> Option<Crs> {
-        None
-    }
-
-    /// What a coordinate is, where the file says it.
-    fn unit(&self) -> Option<Unit> {
-        None
-    }
-
-    /// What the columns of a table were taken for.
-    fn columns(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// The first rows of a table.
-    fn preview(&self) -> Option<Preview> {
-        None
-    }
-
-    /// What else is to be said of the points.
-    fn notes(&self) -> Vec<String> {
-        Vec::new()
-    }
-}
-
-/// How far a parser is.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Step {
-    /// It wants more bytes; or, where there are no more, to be called again with the same.
-    More,
-    /// All points are in the table.
-    Done,
-}
 
 /// Reads a file in slices, of any size: [`Reading::push`] each, then call [`Reading::end`] until it says that it is done.
 /// After every call [`Reading::take_block`] has the points that came with it.
@@ -440,7 +387,7 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
             feature = "packed"
         )))]
         other => {
-            return Err(crate::Error::UnsupportedFile {
+            return Err(crate::base::error::Error::UnsupportedFile {
                 format: other.title(),
                 expected: "a build with its reader".into(),
                 found: "one without".into(),

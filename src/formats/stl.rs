@@ -3,7 +3,7 @@
 
 use super::faces::{Face, Faces};
 use super::input::Input;
-use super::reading::{Parser, Step};
+use super::parser::{Parser, Step};
 use super::table::{Columns, Precision, Table};
 use super::text::{number, words};
 use crate::base::error::Result;

@@ -1,5 +1,8 @@
 //! Text in bytes: numbers, and quotes for messages.
 
+/// The byte order mark of UTF-8.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// A number: decimal or exponent notation, `inf` and `nan` in the spellings of C and of Microsoft's run-time, Fortran's
 /// `D` for the exponent. `None` for anything else.
 pub(super) fn number(token: &[u8]) -> Option<f64> {

@@ -19,17 +19,18 @@ mod dialect;
 mod grid;
 mod guess;
 mod header;
+mod line;
 mod names;
 mod plan;
 
 use super::input::Input;
 use super::options::ReadOptions;
+use super::parser::{Parser, Step};
 use super::preview::Preview;
-use super::reading::{Parser, Step};
 use super::table::Table;
-use crate::base::error::Result;
-use dialect::{Dialect, Value};
-use plan::{NoPlan, Numbered, Plan};
+use crate::base::error::{Error, Result};
+use line::{Line, NoPlan, Numbered, is_comment, line_of};
+use plan::Plan;
 
 /// Lines that decide what the columns are.
 const LOOK_AHEAD: usize = 1000;
@@ -48,42 +49,6 @@ pub(super) fn looks_like(head: &[u8]) -> bool {
         })
         .collect();
     plan::looks_like(&lines)
-}
-
-/// What a line is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Line {
-    /// Blank, or a comment.
-    Nothing,
-    /// One whole number.
-    Count(u64),
-    /// Three numbers or more.
-    Row,
-    Other,
-}
-
-fn line_of(line: &[u8], dialect: Dialect) -> Line {
-    if plan::is_comment(line) {
-        return Line::Nothing;
-    }
-    let (mut numbers, mut said) = (0, 0);
-    let mut first = Value::Empty;
-    for token in dialect.split(line) {
-        let value = dialect.value(token);
-        numbers += u64::from(matches!(value, Value::Number(_) | Value::Hex(_)));
-        if value != Value::Empty {
-            said += 1;
-            first = if said == 1 { value } else { first };
-        }
-    }
-    match (said, first) {
-        (0, _) => Line::Nothing,
-        (1, Value::Number(count)) if count >= 0.0 && count.fract() == 0.0 => {
-            Line::Count(count as u64)
-        }
-        _ if numbers >= 3 => Line::Row,
-        _ => Line::Other,
-    }
 }
 
 /// Reads the points.
@@ -163,7 +128,7 @@ fn read_line(
     values: &mut Vec<f64>,
 ) -> Result<Line> {
     let line = line.trim_ascii_end();
-    if line.is_empty() || plan::is_comment(line) || plan.is_no_point(line) {
+    if line.is_empty() || is_comment(line) || plan.is_no_point(line) {
         return Ok(Line::Nothing);
     }
     if plan.dialect.split(line).nth(1).is_none()
@@ -228,7 +193,7 @@ impl Xyz {
         }
     }
 
-    fn no_rows(&self, input: &Input, expected: &str) -> crate::Error {
+    fn no_rows(&self, input: &Input, expected: &str) -> Error {
         let found = format!("the end of the file after {} rows", self.rows);
         input.bad_at_line(input.place.line.max(1), expected, found)
     }

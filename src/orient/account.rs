@@ -1,43 +1,12 @@
 //! What decided which side is out, as the report says it.
 
-use crate::orient::Solved;
 use crate::orient::domains::Domains;
 use crate::orient::evidence::SOME;
 use crate::orient::graph::Edge;
+use crate::orient::solved::Solved;
 use serde::Serialize;
 
-/// What decides which side of a piece of surface is out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum Source {
-    /// The cloud's own normals.
-    Normals,
-    /// The places that it was seen from.
-    Viewpoints,
-    /// That it was seen from above.
-    Above,
-    /// That it looks as a camera at the origin sees.
-    Camera,
-    /// That it encloses something.
-    Shell,
-    /// That the cloud's or the option's up is out.
-    Up,
-    /// Nothing but a rule for sheets.
-    Guess,
-}
-
-impl Source {
-    /// All of them.
-    pub const ALL: [Source; 7] = [
-        Source::Normals,
-        Source::Viewpoints,
-        Source::Above,
-        Source::Camera,
-        Source::Shell,
-        Source::Up,
-        Source::Guess,
-    ];
-}
+pub use crate::orient::source::Source;
 
 /// What a source had to say.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -3,11 +3,11 @@
 use crate::base::params::Orientation;
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
-use crate::orient::account::Source;
 use crate::orient::camera;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Edge, energy};
 use crate::orient::parts::Parts;
+use crate::orient::source::Source;
 use crate::reduce::shares::Shares;
 use glam::Vec3;
 

@@ -29,6 +29,8 @@ pub(crate) mod paper;
 pub(crate) mod parts;
 pub(crate) mod seen;
 pub(crate) mod sides;
+pub(crate) mod solved;
+pub mod source;
 pub(crate) mod winding;
 
 use crate::base::error::Result;
@@ -36,7 +38,7 @@ use crate::base::params::{Orientation, Propagation};
 use crate::base::progress::{Progress, Stage};
 use crate::fit::Fits;
 use crate::fit::cells::Sites;
-use crate::orient::account::{Account, Source};
+use crate::orient::account::Account;
 use crate::orient::caves::turn_caves;
 use crate::orient::descent::{descend, settle};
 use crate::orient::domains::{Domains, mean_winding};
@@ -46,6 +48,8 @@ use crate::orient::inverted::Inverted;
 use crate::orient::paper::{advancing_front, turn_outward};
 use crate::orient::parts::Parts;
 use crate::orient::sides::turn_parts;
+use crate::orient::solved::Solved;
+use crate::orient::source::Source;
 use glam::Vec3;
 
 /// The signs and what they cost.
@@ -129,17 +133,6 @@ pub fn orient(
         kept: solve.kept,
         account,
     })
-}
-
-/// Signs and where they come from.
-pub(crate) struct Solved {
-    pub(crate) signs: Vec<f32>,
-    energy_before: f64,
-    /// What decided for each sub-domain.
-    pub(crate) sources: Vec<Source>,
-    /// What sources said of each.
-    pub(crate) said: Vec<(Source, Vec<f32>)>,
-    pub(crate) parts: Option<Parts>,
 }
 
 /// What the signs are inferred from.

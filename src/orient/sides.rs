@@ -1,12 +1,12 @@
 //! Which side of every part is out: evidence, else what it encloses, else up; and what its neighbours say.
 
-use crate::orient::account::Source;
 use crate::orient::descent::descend;
 use crate::orient::domains::Domains;
 use crate::orient::evidence::{Evidence, Known};
 use crate::orient::graph::{Edge, adjacency, components};
 use crate::orient::parts::{Parts, Tie};
 use crate::orient::seen::together;
+use crate::orient::source::Source;
 use glam::Vec3;
 
 /// Mean agreement with the evidence from which on a part needs nothing else.

@@ -43,7 +43,14 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
 /// Which side is out, beside Open3D.
 fn bench_orientation() -> Result<()> {
     let mut bench = command("cargo");
-    bench.args(["run", "--release", "--quiet", "--example", "orient_truth", "--"]);
+    bench.args([
+        "run",
+        "--release",
+        "--quiet",
+        "--example",
+        "orient_truth",
+        "--",
+    ]);
     match packages::open3d() {
         Ok(python) => {
             bench.arg(format!("peer={}", python.display()));

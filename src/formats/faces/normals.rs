@@ -1,7 +1,8 @@
 //! Normals at the corners of triangles: the file's, or else the mean of the faces around a vertex that no crease parts.
 
-use super::{Faces, NONE, area_normal, dot, unit};
-use crate::formats::RawCloud;
+use super::triangles::{Faces, NONE};
+use super::vectors::{area_normal, dot, unit};
+use crate::formats::raw_cloud::RawCloud;
 
 /// Cosine of the angle between faces from which on the edge between them is a crease: 45°.
 const CREASE: f64 = std::f64::consts::FRAC_1_SQRT_2;

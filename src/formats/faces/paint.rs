@@ -1,77 +1,9 @@
 //! Colours of points on triangles: of the vertices, of the triangles, of materials and of their textures.
 
-use super::{Faces, NONE, Source};
-use crate::formats::RawCloud;
+use super::looks::{Look, Picture, Texture, Wrap};
+use super::triangles::{Faces, NONE, Source};
+use crate::formats::raw_cloud::RawCloud;
 use crate::formats::text::words;
-
-/// Pixels, the first row at the top.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
-    /// Pixels a row, at least 1.
-    pub width: usize,
-    /// Rows, at least 1.
-    pub height: usize,
-    /// `r g b a` a pixel, sRGB.
-    pub pixels: Vec<u8>,
-}
-
-impl Picture {
-    /// Pixels of a size; `None` where it is not theirs.
-    pub fn new(width: usize, height: usize, pixels: Vec<u8>) -> Option<Picture> {
-        let expected = width.checked_mul(height)?.checked_mul(4)?;
-        (expected > 0 && pixels.len() == expected).then_some(Picture {
-            width,
-            height,
-            pixels,
-        })
-    }
-}
-
-/// A material, as far as it says colours.
-#[derive(Clone, Default)]
-pub(in crate::formats) struct Look {
-    /// Multiplies the colours, from 0 to 1.
-    pub(in crate::formats) factor: Option<[f64; 3]>,
-    pub(in crate::formats) texture: Option<Texture>,
-    /// Multiplies in linear light, as glTF does; else in the display's scale.
-    pub(in crate::formats) linear: bool,
-    /// Where the texture's alpha is under it there is no surface.
-    pub(in crate::formats) cutoff: Option<f64>,
-}
-
-#[derive(Clone)]
-pub(in crate::formats) struct Texture {
-    /// Which of the pictures.
-    pub(in crate::formats) picture: usize,
-    pub(in crate::formats) wrap: [Wrap; 2],
-    /// The nearest pixel, not a mean of four.
-    pub(in crate::formats) nearest: bool,
-}
-
-/// What is beyond a picture's border.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::formats) enum Wrap {
-    Repeat,
-    Mirror,
-    Clamp,
-}
-
-impl Wrap {
-    /// The pixel `i` of `count`.
-    fn pixel(self, i: f64, count: usize) -> usize {
-        let n = count as f64;
-        let i = match self {
-            Wrap::Clamp => i,
-            Wrap::Repeat => i - (i / n).floor() * n,
-            Wrap::Mirror => {
-                let j = i - (i / (2.0 * n)).floor() * 2.0 * n;
-                if j < n { j } else { 2.0 * n - 1.0 - j }
-            }
-        };
-        // The cast takes what is not finite for 0.
-        (i.max(0.0) as usize).min(count - 1)
-    }
-}
 
 pub(super) struct Painter<'a> {
     faces: &'a Faces,

@@ -1,6 +1,6 @@
 //! Polygons to triangles.
 
-use super::{area_normal, cross, dot, minus};
+use super::vectors::{area_normal, cross, dot, minus};
 
 /// Polygons of more corners are cut as fans: to look for ears takes the cube of their number at worst.
 const MOST_CORNERS: usize = 256;

@@ -7,7 +7,7 @@
 //! surface ends a point has fewer others to keep apart from; so that rims do not get more than their share, every few
 //! hundred candidates, which stand for equal areas, have a quota.
 
-use super::{area_normal, dot, unit};
+use super::vectors::{area_normal, dot, unit};
 use crate::base::rng::Rng;
 
 /// Candidates for each point; fewer where they would take more memory than there are points worth it.

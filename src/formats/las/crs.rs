@@ -1,6 +1,6 @@
 //! The coordinate reference system among the variable length records: well-known text, or GeoTIFF's keys.
 
-use super::Header;
+use super::header::Header;
 use crate::cloud::Crs;
 
 /// Bytes of a record before its content, and its numbers.

@@ -4,7 +4,7 @@
 //! So these are checked before it sees them, and a panic that is left is caught and becomes an error.
 
 use super::super::input::Input;
-use super::Header;
+use super::header::Header;
 use super::time::Times;
 use crate::base::error::{Error, Result};
 use laz::las::{v1, v2};

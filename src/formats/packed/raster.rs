@@ -4,7 +4,7 @@
 
 use super::super::input::Input;
 use super::super::options::ReadOptions;
-use super::super::reading::{Parser, Step};
+use super::super::parser::{Parser, Step};
 use super::super::table::{Columns, Table};
 use crate::base::error::Result;
 use std::io::Cursor;

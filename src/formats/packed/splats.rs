@@ -1,10 +1,10 @@
 //! Gaussian splats as SPZ (Niantic, versions 1 to 3) has them: a gzip file of columns.
 
 use super::super::input::Input;
-use super::super::reading::{Parser, Step};
+use super::super::parser::{Parser, Step};
 use super::super::splats::{SPLATS, columns};
 use super::super::table::Table;
-use super::Archive;
+use super::archive::Archive;
 use crate::base::error::Result;
 
 /// Reads the centres.

@@ -5,10 +5,10 @@
 use super::super::colors::ColorRange;
 use super::super::faces::{Face, Faces};
 use super::super::input::Input;
-use super::super::reading::{Parser, Step};
+use super::super::parser::{Parser, Step};
 use super::super::table::{Columns, Table};
 use super::super::text::number;
-use super::Archive;
+use super::archive::Archive;
 use crate::base::error::Result;
 use crate::cloud::Unit;
 use quick_xml::Reader;

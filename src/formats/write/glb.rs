@@ -12,7 +12,7 @@
 use super::local::Local;
 use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
-use crate::formats::RawCloud;
+use crate::formats::raw_cloud::RawCloud;
 use glam::Vec3;
 
 /// Component types of accessors.

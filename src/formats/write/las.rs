@@ -2,10 +2,10 @@
 //! diagonal; colours of 16 bits; attributes in the fields of their names where those hold their values, and else, with the
 //! normals, as extra bytes in single precision; the reference system as the file had it that the cloud was read from.
 
-use super::world;
+use super::values::world;
 use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Crs};
-use crate::formats::RawCloud;
+use crate::formats::raw_cloud::RawCloud;
 use ::las::point::{Classification, Format, Point};
 use ::las::{Builder, Color, Transform, Vector, Vlr, Writer, raw};
 use std::io::Cursor;
@@ -238,7 +238,7 @@ fn transforms(cloud: &RawCloud) -> Result<Vector<Transform>> {
 
 fn color(cloud: &RawCloud, i: usize) -> Color {
     let of = |c: u8| u16::from(c) * 257;
-    match super::triple(&cloud.colors, i) {
+    match super::values::triple(&cloud.colors, i) {
         &[red, green, blue] => Color::new(of(red), of(green), of(blue)),
         _ => Color::default(),
     }

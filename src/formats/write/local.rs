@@ -1,7 +1,7 @@
 //! World coordinates as an origin in double precision and what is left in single.
 
-use super::{Positions, RawCloud};
 use crate::base::error::{Error, Result};
+use crate::formats::raw_cloud::{Positions, RawCloud};
 
 /// Positions that single precision holds, and what is added to them to give world coordinates.
 pub(super) struct Local {

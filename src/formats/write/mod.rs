@@ -13,11 +13,12 @@ mod stand;
 mod stl;
 #[cfg(feature = "exports")]
 mod threemf;
+mod values;
 mod xyz;
 #[cfg(feature = "exports")]
 mod zip;
 
-use super::{Positions, RawCloud};
+use super::raw_cloud::RawCloud;
 use crate::base::error::{Error, Result};
 use crate::cloud::Unit;
 use stand::Wanted;
@@ -193,22 +194,4 @@ fn check_triangles(indices: &[u32], points: usize) -> Result<()> {
             found: indices[index],
         }),
     }
-}
-
-/// Whether world coordinates need double precision.
-fn is_double(cloud: &RawCloud) -> bool {
-    cloud.origin.is_some() || matches!(cloud.positions, Positions::F64(_))
-}
-
-/// A point in world coordinates.
-fn world(cloud: &RawCloud, i: usize) -> [f64; 3] {
-    let origin = cloud.origin.unwrap_or_default();
-    [0, 1, 2].map(|axis| cloud.positions.get(3 * i + axis) + origin[axis])
-}
-
-/// The three values of point `i`, or none where there is no such array.
-fn triple<T>(array: &Option<Vec<T>>, i: usize) -> &[T] {
-    array
-        .as_ref()
-        .map_or(&[], |values| &values[3 * i..3 * i + 3])
 }

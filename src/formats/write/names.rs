@@ -1,6 +1,6 @@
 //! Names of the columns of a table.
 
-use crate::formats::RawCloud;
+use crate::formats::raw_cloud::RawCloud;
 
 /// What a written column holds.
 #[derive(Clone, Copy)]

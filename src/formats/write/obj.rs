@@ -1,8 +1,8 @@
 //! Wavefront OBJ: `v x y z r g b` with the colours from 0 to 1 that most programs know, `vn`, and `f` lines that name a
 //! vertex and the normal of the same number. Points have no `f` lines.
 
-use super::{is_double, triple, world};
-use crate::formats::RawCloud;
+use super::values::{is_double, triple, world};
+use crate::formats::raw_cloud::RawCloud;
 use std::fmt::Write;
 
 /// Writes vertices and, with `triangles`, faces, in text that reads back to the same bits; four digits of a colour do.

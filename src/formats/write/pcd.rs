@@ -2,8 +2,8 @@
 //! the origin need it; a colour is packed into four, as the Point Cloud Library has it; one viewpoint is `VIEWPOINT`.
 
 use super::names::{Column, names};
-use super::{is_double, triple, world};
-use crate::formats::RawCloud;
+use super::values::{is_double, triple, world};
+use crate::formats::raw_cloud::RawCloud;
 
 /// Writes points.
 pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {

@@ -1,8 +1,8 @@
 //! PLY: a text header that names the columns, then rows, little endian or as text.
 
 use super::names::{Column, names};
-use super::{is_double, triple, world};
-use crate::formats::RawCloud;
+use super::values::{is_double, triple, world};
+use crate::formats::raw_cloud::RawCloud;
 use std::fmt::Debug;
 use std::io::Write;
 

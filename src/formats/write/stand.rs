@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::cloud::{Unit, Viewpoints};
-use crate::formats::{Positions, RawCloud};
+use crate::formats::raw_cloud::{Positions, RawCloud};
 use glam::{DMat3, DVec3};
 
 /// The cloud with `up` up and in `unit`, each where it is given: turned the shortest way, and scaled. Along axes that is exact but

@@ -3,7 +3,7 @@
 
 use super::local::Local;
 use crate::base::error::Result;
-use crate::formats::RawCloud;
+use crate::formats::raw_cloud::RawCloud;
 use glam::Vec3;
 
 const HEADER: usize = 80;

@@ -5,7 +5,7 @@ use super::local::Local;
 use super::zip::archive;
 use crate::base::error::{Error, Result};
 use crate::cloud::Unit;
-use crate::formats::RawCloud;
+use crate::formats::raw_cloud::RawCloud;
 use std::fmt::Write;
 
 const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\

@@ -1,8 +1,8 @@
 //! Rows of numbers as text, after a comment that names the columns.
 
 use super::names::names;
-use super::{is_double, triple, world};
-use crate::formats::RawCloud;
+use super::values::{is_double, triple, world};
+use crate::formats::raw_cloud::RawCloud;
 use std::fmt::Write;
 
 /// Writes points in text that reads back to the same bits.

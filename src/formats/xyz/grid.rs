@@ -4,7 +4,7 @@ use super::super::options::ReadOptions;
 use super::super::text::decoded;
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
 use super::guess::Column;
-use super::plan::{Numbered, is_comment};
+use super::line::{Numbered, is_comment};
 
 /// The dialect in which most lines are rows, with the fewest values that are no numbers and the fewest widths.
 pub(super) fn dialect_of(said: &[&Numbered], options: &ReadOptions) -> Dialect {

@@ -3,9 +3,8 @@
 use super::super::text::decoded;
 use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
 use super::grid::Grid;
+use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
 use super::names;
-use super::plan::{NoPlan, Numbered, is_comment};
-use super::{Line, line_of};
 
 /// A header that numbers its columns, as pandas writes it: `,0,1,2`.
 pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {

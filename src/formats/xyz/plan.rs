@@ -5,20 +5,13 @@ use super::super::input::Input;
 use super::super::options::ReadOptions;
 use super::super::preview::Preview;
 use super::super::table::Columns;
-use super::super::text::quote;
 use super::dialect::{Dialect, Value, hex};
 use super::grid::{Grid, dialect_of};
 use super::guess::{Column, guess, is_colmap};
 use super::header::{Header, header, header_names, is_header_of_numbers};
+use super::line::{Line, NoPlan, Numbered, line_of};
 use super::names;
-use super::{Line, line_of};
-use crate::base::error::Result;
-
-/// A line of the file.
-pub(super) struct Numbered {
-    pub(super) number: u64,
-    pub(super) bytes: Vec<u8>,
-}
+use crate::base::error::{Error, Result};
 
 /// How rows are read.
 pub(super) struct Plan {
@@ -37,28 +30,6 @@ pub(super) struct Plan {
     /// The letter that points have in front, where other lines have others (Hoppe, 1992).
     letter: Option<u8>,
     pub(super) preview: Preview,
-}
-
-/// Why there is no plan.
-pub(super) enum NoPlan {
-    /// Nothing in the lines is a row or names columns.
-    Nothing,
-    /// A line is wrong.
-    Line {
-        number: u64,
-        expected: String,
-        found: String,
-    },
-}
-
-impl NoPlan {
-    pub(super) fn line(line: &Numbered, expected: impl Into<String>) -> NoPlan {
-        NoPlan::Line {
-            number: line.number,
-            expected: expected.into(),
-            found: quote(&line.bytes),
-        }
-    }
 }
 
 impl Plan {
@@ -264,7 +235,7 @@ impl Plan {
         Ok(())
     }
 
-    fn wrong_width(&self, line: &[u8], input: &Input, number: u64) -> crate::Error {
+    fn wrong_width(&self, line: &[u8], input: &Input, number: u64) -> Error {
         let expected = format!("{} values", self.roles.len().max(3));
         input.bad_value(number, &expected, line)
     }
@@ -290,11 +261,6 @@ fn letter_of(rows: &[&Numbered], dialect: Dialect) -> Option<u8> {
 /// Whether a line says something: it is neither blank nor only marks.
 fn is_said(line: &[u8]) -> bool {
     line.iter().any(|b| !b.is_ascii_whitespace())
-}
-
-pub(super) fn is_comment(line: &[u8]) -> bool {
-    let line = line.trim_ascii_start();
-    line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark))
 }
 
 /// Whether the lines can be rows: the first that says something is one, counts them, or names x, y and z; or a title is above
