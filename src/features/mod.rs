@@ -138,7 +138,7 @@ impl Features {
 }
 
 /// Whether [`copies`] finds any.
-fn copied(points: &[Vec3]) -> bool {
+pub(crate) fn copied(points: &[Vec3]) -> bool {
     points.windows(2).any(|pair| pair[0] == pair[1])
 }
 

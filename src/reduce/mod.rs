@@ -6,6 +6,7 @@ pub mod density;
 pub mod fcm;
 pub mod height_field;
 pub mod paper;
+pub(crate) mod places;
 pub mod placement;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
@@ -26,6 +27,7 @@ use crate::reduce::clusters::{SHARES, Samples, Settling, Shares};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::placement::{Members, Placed};
+use crate::reduce::places::Places;
 use crate::reduce::surroundings::Around;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
@@ -90,7 +92,8 @@ pub struct Clustering {
 }
 
 /// Reduces a cloud of at least one point, whose positions are taken from its `tree`. Features are freed as soon as nothing
-/// asks for them any more.
+/// asks for them any more. Copies of a point are one place, which is reduced once and stands for all of them; only a target
+/// that is all points keeps the copies.
 ///
 /// # Errors
 /// [`crate::Error::BadOption`], [`crate::Error::Cancelled`].
@@ -103,8 +106,16 @@ pub fn reduce(
 ) -> Result<Reduced> {
     params.validate()?;
     let power = Fuzzifier::new(fuzzifier(params));
+    let given = tree.points.len();
+    let all = params.target.count(given) == Some(given);
+    let places = if all { None } else { Places::of(tree) };
+    let (at, features) = match &places {
+        Some(places) => (&places.tree, places.features(&features)),
+        None => (tree, features),
+    };
     let mut job = Job {
-        tree,
+        tree: at,
+        given,
         features,
         params,
     };
@@ -122,35 +133,43 @@ pub fn reduce(
     let members = Members::new(&clustering.shares, clustering.centers.len());
     let mut placed = job.place(&clustering, &arrangement, &members, plan);
     drop(job);
-    let stats = stats(tree, &clustering, &arrangement.around, power);
+    let stats = stats(at, &clustering, &arrangement.around, power);
     drop((arrangement, clustering.spacing));
     progress.update(Stage::Place, 0.5)?;
     let nearest = if plan.placement == Placement::Sample {
-        placement::snap(tree, &members, &mut placed)
+        placement::snap(at, &members, &mut placed)
     } else {
         par::map(
             placed.len(),
             || (),
-            |i, ()| placement::nearest(tree, &members, i, placed[i].position),
+            |i, ()| placement::nearest(at, &members, i, placed[i].position),
         )
     };
-    let reduced = placement::carry(cloud, tree, &members, &placed, &nearest, &params.attributes);
+    let cells = params.cells.then(|| {
+        let ranges = clustering.cells.iter();
+        ranges
+            .map(|range| corners(&at.points[range.clone()]))
+            .collect()
+    });
+    // From here on about the points, copies too.
+    let point = |&k: &u32| places.as_ref().map_or(k, |places| places.point(k));
+    let nearest: Vec<u32> = nearest.iter().map(point).collect();
+    let spread = places.as_ref().map(|p| p.spread(&clustering.shares));
+    let of_copies = spread.as_ref().map(|s| Members::new(s, placed.len()));
+    let members = of_copies.as_ref().unwrap_or(&members);
+    let reduced = placement::carry(cloud, tree, members, &placed, &nearest, &params.attributes);
+    drop(of_copies);
+    let shares = spread.unwrap_or(clustering.shares);
     let mut weights = vec![0.0; placed.len()];
-    for s in &clustering.shares {
+    for s in &shares {
         weights[s.center[0] as usize] += 1.0;
     }
     let assignment = params.assignment.then(|| {
         let mut assignment = vec![0; tree.points.len()];
-        for (s, &i) in clustering.shares.iter().zip(&tree.order) {
+        for (s, &i) in shares.iter().zip(&tree.order) {
             assignment[i as usize] = s.center[0];
         }
         assignment
-    });
-    let cells = params.cells.then(|| {
-        let ranges = clustering.cells.iter();
-        ranges
-            .map(|range| corners(&tree.points[range.clone()]))
-            .collect()
     });
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
@@ -161,7 +180,7 @@ pub fn reduce(
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
         cells,
-        shares: clustering.shares,
+        shares,
         stats,
         reason,
     })
@@ -202,7 +221,10 @@ struct Plan {
 
 /// What a reduction works on.
 struct Job<'a> {
+    /// Of the places.
     tree: &'a Octree,
+    /// Points, with all copies.
+    given: usize,
     features: Features,
     params: &'a ReduceParams,
 }
@@ -221,7 +243,15 @@ impl Job<'_> {
             let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
             return Ok((self.within(tolerance, progress)?, reason));
         }
-        let count = self.params.target.count(self.tree.points.len());
+        let places = self.tree.points.len();
+        let asked = self.params.target.count(self.given);
+        let count = asked.map(|count| count.min(places));
+        let reason = match asked {
+            Some(asked) if asked > places => {
+                format!("the points are at {places} places: each is kept once")
+            }
+            _ => String::new(),
+        };
         let goal = match (count, self.params.method) {
             (None, _) => Goal::Flatness,
             (Some(count), Method::Paper) => Goal::Count(count),
@@ -231,7 +261,7 @@ impl Job<'_> {
                 Goal::Density(count, density)
             }
         };
-        Ok((goal, String::new()))
+        Ok((goal, reason))
     }
 
     /// Looks for the fewest points that keep the surface within a tolerance.
