@@ -15,3 +15,4 @@ pub mod pool;
 pub mod power;
 pub mod progress;
 pub mod rng;
+pub(crate) mod sets;

@@ -222,6 +222,25 @@ pub enum Propagation {
     Paper,
 }
 
+/// What decides which side is out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Orientation {
+    /// Everything that is known, as far as it holds when it is checked: the cloud's normals, its viewpoints, that it was seen
+    /// from above, a depth camera at the origin; then closed shapes look outward and sheets up.
+    Auto,
+    /// The cloud's own normals, unchecked.
+    Normals,
+    /// The cloud's viewpoints: what was seen looks to where it was seen from.
+    Viewpoints,
+    /// Along the cloud's `up`, z where it has none.
+    Up,
+    /// Away from the inside of what the surface encloses: objects.
+    Outward,
+    /// Into it: rooms.
+    Inward,
+}
+
 /// Options of [`crate::reconstruct`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -238,6 +257,10 @@ pub struct SurfaceParams {
     pub smoothing: Smoothing,
     /// Infer which side is out; `false` takes the cloud's own normals as they are. Default `true`.
     pub orient: bool,
+    /// What decides which side is out; [`Propagation::Paper`] and `orient: false` have their own rules. Default: auto.
+    pub orientation: Orientation,
+    /// Turn the whole result to the other side in the end. Default `false`.
+    pub flip: bool,
     /// Default: global.
     pub propagation: Propagation,
     /// Default: auto.
@@ -261,6 +284,8 @@ impl Default for SurfaceParams {
             kernel: Kernel::Triharmonic,
             smoothing: Smoothing::Auto,
             orient: true,
+            orientation: Orientation::Auto,
+            flip: false,
             propagation: Propagation::Global,
             resolution: Resolution::Auto,
             sharp: true,

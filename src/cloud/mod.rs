@@ -2,10 +2,13 @@
 
 pub mod neighborhood;
 pub mod octree;
+mod viewpoints;
 
 use crate::base::error::{Error, Result};
 use glam::Vec3;
 use std::ops::Range;
+
+pub use viewpoints::Viewpoints;
 
 /// The bounding box is that of the others where a few points make it this many times as long: at 100 times a surface of
 /// what is near was gone, at 10,000 single precision has nothing left for it. Beyond the end of the range squares overflow.
@@ -118,6 +121,12 @@ pub struct Cloud {
     pub attributes: Vec<Attribute>,
     /// Added to the caller's positions to give world coordinates; carried along.
     pub origin: Option<[f64; 3]>,
+    /// Where the points were seen from.
+    pub viewpoints: Option<Viewpoints>,
+    /// Which way is up: a unit vector along the caller's axes.
+    pub up: Option<Vec3>,
+    /// Whether all was seen from high above, along `up` (z where there is none): airborne scans.
+    pub seen_from_above: bool,
 }
 
 impl Cloud {
@@ -160,6 +169,9 @@ impl Cloud {
             normals: None,
             attributes: Vec::new(),
             origin: None,
+            viewpoints: None,
+            up: None,
+            seen_from_above: false,
         })
     }
 
@@ -219,6 +231,40 @@ impl Cloud {
         self
     }
 
+    /// Says where the points were seen from: `x y z …` in the caller's frame, and for each point which of these saw it
+    /// ([`Viewpoints::UNKNOWN`]: none of them); without `of` the first saw all.
+    ///
+    /// # Errors
+    /// Those of [`Viewpoints::new`].
+    pub fn with_viewpoints(mut self, positions: &[f64], of: Option<&[u32]>) -> Result<Cloud> {
+        self.viewpoints = Some(Viewpoints::new(positions, of, self.len())?);
+        Ok(self)
+    }
+
+    /// Says which way is up, along the caller's axes; made unit length here.
+    ///
+    /// # Errors
+    /// [`Error::BadOption`] (zero or not finite).
+    pub fn with_up(mut self, up: [f64; 3]) -> Result<Cloud> {
+        let longest = up.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+        if !up.iter().all(|x| x.is_finite()) || longest == 0.0 {
+            return Err(Error::BadOption {
+                option: "up".into(),
+                expected: "three finite numbers that are not all 0".into(),
+                found: format!("{}, {}, {}", up[0], up[1], up[2]),
+            });
+        }
+        let up = Vec3::from_array(up.map(|x| (x / longest) as f32));
+        self.up = Some(up.normalize());
+        Ok(self)
+    }
+
+    /// Says whether all was seen from high above, as airborne scans are.
+    pub fn with_seen_from_above(mut self, seen_from_above: bool) -> Cloud {
+        self.seen_from_above = seen_from_above;
+        self
+    }
+
     /// These points alone, in the unit frame of their own bounding box. Positions are rounded once more: by at most 2⁻²⁴ of
     /// this cloud's diagonal.
     ///
@@ -244,6 +290,9 @@ impl Cloud {
                 })
                 .collect(),
             origin: self.origin,
+            viewpoints: self.viewpoints.as_ref().map(|v| v.select(each())),
+            up: self.up,
+            seen_from_above: self.seen_from_above,
             ..Cloud::from_f64(&positions)?
         })
     }

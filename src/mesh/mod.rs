@@ -77,6 +77,14 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+impl Mesh {
+    /// Turns it to its other side.
+    pub fn invert(&mut self) {
+        self.normals.iter_mut().for_each(|n| *n = -*n);
+        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+}
+
 /// What [`extract`] makes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Extracted {

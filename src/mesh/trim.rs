@@ -5,11 +5,11 @@
 use crate::base::lists::{Lists, key, of_key, pack, unpack};
 use crate::base::par;
 use crate::base::params::Boundary;
+use crate::base::sets::Sets;
 use crate::cloud::octree::Octree;
 use crate::mesh::MOST_FILLED;
 use crate::mesh::dual::{Dual, Quad, Vertex};
 use crate::orient::SMALLEST;
-use crate::report::Sets;
 use glam::Vec3;
 
 /// An open surface ends within this share of a point's reach of it. Reaches are some 2.2 spacings, so that is 1.3, and what

@@ -3,14 +3,17 @@
 
 use crate::base::kernel::solid_angle;
 use crate::base::par;
-use crate::fit::Fits;
-use crate::fit::cells::Sites;
+use crate::orient::domains::Domains;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// The components that an odd number of others have inside of them. Cost: a few samples of each against every sub-domain of
-/// those whose box is around its own.
-pub(crate) fn caves<'a>(solids: &[Solid<'a>]) -> Vec<&'a [u32]> {
+/// Turns the closed components that an odd number of others have inside of them. All must look outward. Cost: a few samples
+/// of each against every sub-domain of those whose box is around its own.
+pub(crate) fn turn_caves(closed: &[&[u32]], domains: &Domains, signs: &mut [f32]) {
+    let solids: Vec<Solid> = closed
+        .iter()
+        .map(|c| Solid::new(c, domains, signs))
+        .collect();
     let is_cave = par::map(
         solids.len(),
         || (),
@@ -19,13 +22,15 @@ pub(crate) fn caves<'a>(solids: &[Solid<'a>]) -> Vec<&'a [u32]> {
             around.count() % 2 == 1
         },
     );
-    let with = solids.iter().zip(is_cave).filter(|s| s.1);
-    with.map(|(solid, _)| solid.component).collect()
+    for (component, _) in closed.iter().zip(is_cave).filter(|c| c.1) {
+        component
+            .iter()
+            .for_each(|&s| signs[s as usize] = -signs[s as usize]);
+    }
 }
 
 /// A closed component that looks outward.
-pub(crate) struct Solid<'a> {
-    component: &'a [u32],
+struct Solid {
     /// Corners of its sites' box.
     low: Vec3,
     high: Vec3,
@@ -35,26 +40,21 @@ pub(crate) struct Solid<'a> {
     dipoles: Vec<(DVec3, DVec3)>,
 }
 
-impl<'a> Solid<'a> {
+impl Solid {
     /// Sites that are asked whether they are in another solid: the mean over them is off by less than its margin, ½, even
     /// where the two nearly touch.
     const SAMPLES: usize = 16;
 
-    pub(crate) fn new(
-        component: &'a [u32],
-        fits: &Fits,
-        sites: &Sites,
-        gradients: &[Vec<Vec3>],
-        signs: &[f32],
-    ) -> Solid<'a> {
+    fn new(component: &[u32], domains: &Domains, signs: &[f32]) -> Solid {
+        let sites = domains.sites;
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let step = component.len().div_ceil(Solid::SAMPLES);
         let (mut samples, mut dipoles) = (Vec::new(), Vec::new());
         for (k, &s) in component.iter().enumerate() {
-            let subdomain = &fits.subdomains[s as usize];
+            let subdomain = &domains.fits.subdomains[s as usize];
             let core = &subdomain.support[..subdomain.core];
             let (mut center, mut moment) = (DVec3::ZERO, DVec3::ZERO);
-            for (&i, &g) in core.iter().zip(&gradients[s as usize]) {
+            for (i, g) in domains.core(s) {
                 let (p, h) = (sites.tree.points[i as usize], sites.spacing[i as usize]);
                 (low, high) = (low.min(p), high.max(p));
                 center += p.as_dvec3() / core.len() as f64;
@@ -66,7 +66,6 @@ impl<'a> Solid<'a> {
             dipoles.push((center, moment));
         }
         Solid {
-            component,
             low,
             high,
             samples,

@@ -11,6 +11,9 @@ use crate::reduce::Reduced;
 use glam::Vec3;
 use std::borrow::Cow;
 
+/// Cosine of the largest angle between a normal of the cloud and the measured one: 60°.
+const ACROSS: f32 = 0.5;
+
 /// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
 /// as a scanner knows more than neighbours tell.
 pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
@@ -21,7 +24,13 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     if let Some(normals) = &cloud.normals {
         for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
             let own = normals[i as usize];
-            *normal = if own == Vec3::ZERO { *normal } else { own };
+            let along = own.dot(*normal);
+            // What stands across the surface is no normal of it; only its sign may be one.
+            if *normal == Vec3::ZERO || along.abs() > ACROSS {
+                *normal = if own == Vec3::ZERO { *normal } else { own };
+            } else if along < 0.0 {
+                *normal = -*normal;
+            }
         }
     }
     Ok((tree, features))
@@ -119,6 +128,9 @@ impl Input<'_> {
             normals,
             attributes,
             origin,
+            viewpoints,
+            up,
+            seen_from_above,
         } = cloud;
         let (of, tree) = (&self.cloud, &self.tree);
         let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
@@ -127,6 +139,7 @@ impl Input<'_> {
             && (of.frame, of.origin) == (*frame, *origin)
             && tree.points.iter().zip(&tree.order).all(place)
             && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
+            && (&of.viewpoints, of.up, of.seen_from_above) == (viewpoints, *up, *seen_from_above)
     }
 }
 

@@ -5,7 +5,9 @@ pub(crate) mod input;
 use crate::base::clock::Clock;
 use crate::base::error::{Error, Result};
 use crate::base::par;
-use crate::base::params::{COLORS, Outliers, ReduceParams, Resolution, SurfaceParams, Target};
+use crate::base::params::{
+    COLORS, Orientation, Outliers, ReduceParams, Resolution, SurfaceParams, Target,
+};
 use crate::base::progress::Progress;
 use crate::cloud::octree::Octree;
 use crate::cloud::{Attribute, Cloud};
@@ -17,6 +19,7 @@ use crate::mesh::attach::attach;
 use crate::mesh::field::Field;
 use crate::mesh::{ExtractParams, Mesh, extract};
 use crate::orient;
+use crate::orient::evidence::Evidence;
 use crate::pipeline::input::{Input, Origin, measure};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
@@ -175,7 +178,8 @@ fn reduce_input(
 ///
 /// # Errors
 /// [`Error::TooFewPoints`] (under 4), [`Error::Degenerate`] (all points on a line or at one place),
-/// [`Error::BadOption`] (`orient: false` without normals too), [`Error::Cancelled`].
+/// [`Error::BadOption`] (`orient: false`, or an `orientation` by evidence that the cloud has not got, too),
+/// [`Error::Cancelled`].
 pub fn reconstruct(
     cloud: &Cloud,
     params: &SurfaceParams,
@@ -228,8 +232,8 @@ fn reconstruct_input(
     surface(input, fitted, params, clock)
 }
 
-/// The reduced cloud, and where its points are for the fit.
-type Reduction = (Reduced, Vec<Vec3>);
+/// The reduced cloud, where its points are for the fit, and what is known of their outer side.
+type Reduction = (Reduced, Vec<Vec3>, Evidence);
 
 /// What is remembered of a cloud from one call to the next.
 #[derive(Debug, Default)]
@@ -310,7 +314,7 @@ struct Measured {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions): Reduction,
+    (mut reduced, positions, evidence): Reduction,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -331,10 +335,27 @@ fn surface(
         let found = "no neighbourhood of the points spans a surface".into();
         return Err(Error::Degenerate { found });
     }
-    let signs = orient::orient(&fits, &sites, params.propagation, &mut clock)?;
+    let evidence = evidence.at_sites(&site_of, sites.tree.points.len());
+    let rules = (params.orientation, params.propagation);
+    let mut signs = orient::orient(&fits, &sites, &evidence, rules, &mut clock)?;
+    // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
+    let inward = signs.look_inward(&sites);
+    if inward {
+        signs.invert();
+    }
     let field = Field::new(&fits, &signs, &sites);
     let how = extract_params(&sites, params);
-    let mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
+    drop(field);
+    if inward {
+        signs.invert();
+    }
+    if inward != params.flip {
+        mesh.invert();
+    }
+    if params.flip {
+        signs.invert();
+    }
 
     let normals = reduced.cloud.normals.get_or_insert_default();
     normals.resize(reduced.cloud.points.len(), Vec3::ZERO);
@@ -369,7 +390,10 @@ fn surface(
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
     let surface_report = SurfaceReport {
-        reduce: report.clone(),
+        reduce: ReduceReport {
+            doubts: report::doubts(&signs.account),
+            ..report.clone()
+        },
         triangles: mesh.triangles.len(),
         components: topology.components,
         boundary_edges: topology.boundary_edges,
@@ -380,6 +404,7 @@ fn surface(
         beyond_accuracy: beyond as f64 / input.len() as f64,
         orientation_energy: signs.energy,
         orientation_energy_before: signs.energy_before,
+        orientation: signs.account,
     };
     let cloud = ReducedCloud { reduced, report };
     Ok(Surface {
@@ -459,6 +484,18 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
             found: "false and no normals".into(),
         });
     }
+    let (lacks, evidence) = match params.orientation {
+        Orientation::Normals => (cloud.normals.is_none(), "normals"),
+        Orientation::Viewpoints => (cloud.viewpoints.is_none(), "viewpoints"),
+        _ => (false, ""),
+    };
+    if lacks {
+        return Err(Error::BadOption {
+            option: "orientation".into(),
+            expected: format!("a cloud with {evidence}"),
+            found: format!("'{evidence}' and the cloud has none"),
+        });
+    }
     match &params.reduce {
         Some(reduce) => check_attributes(cloud, reduce),
         None => Ok(()),
@@ -512,7 +549,8 @@ fn points_to_fit(
                 Some(spare) if is_few(reduced.cloud.len()) => features = spare,
                 _ => {
                     let positions = reduced.cloud.points.clone();
-                    return Ok((reduced, positions));
+                    let evidence = evidence(cloud, tree, &reduced);
+                    return Ok((reduced, positions, evidence));
                 }
             }
         }
@@ -528,7 +566,12 @@ fn points_to_fit(
     if params.reduce.is_some() {
         reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
     }
-    Ok((reduced, positions))
+    let evidence = evidence(cloud, tree, &reduced);
+    Ok((reduced, positions, evidence))
+}
+
+fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
+    Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
 }
 
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for

@@ -283,8 +283,8 @@ pub fn snap(tree: &Octree, members: &Members, placed: &mut [Placed]) -> Vec<u32>
     chosen
 }
 
-/// The reduced cloud's colours and scalars, carried as `attributes` says, and its normal signs, by the mean of the
-/// input's. `nearest` has the nearest input point of every placed one, in the octree's order.
+/// The reduced cloud's colours and scalars, carried as `attributes` says, its normal signs, by the mean of the
+/// input's, and its viewpoints, those of the nearest input points. `nearest` has the nearest input point of every placed one, in the octree's order.
 pub fn carry(
     cloud: &Cloud,
     tree: &Octree,
@@ -343,6 +343,12 @@ pub fn carry(
         normals: Some(each.clone().map(signed).collect()),
         attributes: attributes.collect(),
         origin: cloud.origin,
+        viewpoints: cloud
+            .viewpoints
+            .as_ref()
+            .map(|v| v.select(each.clone().map(closest))),
+        up: cloud.up,
+        seen_from_above: cloud.seen_from_above,
     }
 }
 

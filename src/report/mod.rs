@@ -4,11 +4,17 @@
 //! serialise in camel case, as JS sees them; a number that does not exist for a job is 0, and `reason` says why.
 
 pub mod distance;
+mod knowledge;
 
 use crate::base::lists::{Lists, pack, unpack};
 use crate::base::progress::Stage;
+use crate::base::sets::Sets;
 use glam::{DVec3, Vec3};
 use serde::{Serialize, Serializer, ser::SerializeMap};
+
+pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
+pub use knowledge::Doubt;
+pub(crate) use knowledge::doubts;
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -107,6 +113,8 @@ pub struct ReduceReport {
     pub threads: usize,
     /// Why the result is not what was asked to the letter (a target out of reach, a fallback); empty where it is.
     pub reason: String,
+    /// What may not be as it should.
+    pub doubts: Vec<Doubt>,
 }
 
 /// What a reconstruction did: all of [`ReduceReport`] (`distance` is then from the input points to the mesh), and:
@@ -136,6 +144,8 @@ pub struct SurfaceReport {
     pub orientation_energy: f64,
     /// The same before conflicts were solved over the whole graph.
     pub orientation_energy_before: f64,
+    /// What decided which side is out.
+    pub orientation: OrientationReport,
 }
 
 /// The connectivity of a triangle mesh.
@@ -324,46 +334,6 @@ fn count_duplicates(triangles: &[[u32; 3]], vertex_count: usize) -> usize {
         first[t[0] as usize] = i as u32;
     }
     duplicates
-}
-
-/// Disjoint sets of `0..n`; the smallest member names its set.
-pub(crate) struct Sets(Vec<u32>);
-
-impl Sets {
-    pub(crate) fn new(n: usize) -> Sets {
-        Sets((0..n as u32).collect())
-    }
-
-    pub(crate) fn find(&mut self, i: u32) -> u32 {
-        let mut i = i;
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-
-    /// The number of each member's set, in the order of their least members, and how many sets there are.
-    pub(crate) fn numbered(self) -> (Vec<u32>, usize) {
-        let (mut of, mut count) = (self.0, 0);
-        for i in 0..of.len() {
-            // A link leads to a lesser member, which has its number already.
-            let up = of[i] as usize;
-            of[i] = if up == i {
-                count += 1;
-                count - 1
-            } else {
-                of[up]
-            };
-        }
-        (of, count as usize)
-    }
 }
 
 /// The three corners of a triangle.
