@@ -204,12 +204,24 @@ pub enum Resolution {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Boundary {
-    /// Small holes are closed, open sheets stay open.
+    /// Holes up to [`SurfaceParams::max_hole`] are closed, open sheets stay open.
     Auto,
-    /// The surface closes.
+    /// As `Open`, and every rim is capped by a membrane, which is flat where the rim is.
     Closed,
     /// The surface ends where the points end.
     Open,
+}
+
+/// Widest hole that is closed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub enum MaxHole {
+    /// A tenth of the diagonal; a fifth where the surface goes on smoothly across the hole.
+    Auto,
+    /// Fraction of the diagonal, 0 to 1. A hole is as wide as the largest disc in it, and gaps of the sampling, up to some
+    /// four spacings wide, are closed anyway.
+    #[serde(untagged)]
+    Diameter(f64),
 }
 
 /// Which inference chooses the signs of the local functions.
@@ -269,6 +281,8 @@ pub struct SurfaceParams {
     pub sharp: bool,
     /// Default: auto.
     pub boundary: Boundary,
+    /// With `boundary` auto, the widest hole that is closed. Default: auto.
+    pub max_hole: MaxHole,
     /// Say of every input point and every vertex how far scan and mesh are apart there. Default `false`.
     pub distances: bool,
     /// For [`crate::pipeline::reconstruct_again`]: remember what was measured of the cloud and its reduction. Default
@@ -290,6 +304,7 @@ impl Default for SurfaceParams {
             resolution: Resolution::Auto,
             sharp: true,
             boundary: Boundary::Auto,
+            max_hole: MaxHole::Auto,
             distances: false,
             keep: false,
         }
@@ -382,6 +397,14 @@ impl SurfaceParams {
                 e,
                 (1e-4..=0.25).contains(&e),
                 "'auto' or a number in [0.0001, 0.25]",
+            )?;
+        }
+        if let MaxHole::Diameter(d) = self.max_hole {
+            check(
+                "maxHole",
+                d,
+                (0.0..=1.0).contains(&d),
+                "'auto' or a number in [0, 1]",
             )?;
         }
         Ok(())

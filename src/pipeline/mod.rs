@@ -10,16 +10,17 @@ use crate::base::params::{
 };
 use crate::base::progress::Progress;
 use crate::cloud::octree::Octree;
-use crate::cloud::{Attribute, Cloud};
+use crate::cloud::{Attribute, Cloud, in_frame};
 use crate::features::noise::{Scales, quantile};
 use crate::features::{self, Features};
 use crate::fit;
 use crate::fit::cells::{self, Sites};
 use crate::mesh::attach::attach;
+use crate::mesh::few::{self, Few};
 use crate::mesh::field::Field;
-use crate::mesh::{ExtractParams, Mesh, extract};
-use crate::orient;
+use crate::mesh::{ExtractParams, Extracted, Mesh, extract};
 use crate::orient::evidence::Evidence;
+use crate::orient::{self, Signs};
 use crate::pipeline::input::{Input, Origin, measure};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
@@ -118,6 +119,8 @@ const MIN_REDUCED: usize = 64;
 /// Edge length of the extraction grid in median spacings: vertices are moved onto the zero set, so that edges of 0.5 to
 /// 0.9 spacings give the same error (bench clouds: within 2 %), at 11 and 3.4 triangles a point before simplification.
 const EDGE: f64 = 0.75;
+/// Share of signs more than against it that turn a hull.
+const AGREE: f64 = 0.8;
 /// Triangles a fitted point, at most, unless the caller chooses a resolution.
 const TRIANGLES: usize = 3;
 
@@ -168,7 +171,7 @@ fn reduce_input(
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
     let distances = cloud_distances(|k| points[k], &reduced.shares, &patches, &mut clock)?;
-    let distance = DistanceStats::of(distances.into_iter().map(f64::from));
+    let distance = near_stats(&points, distances.into_iter().map(f64::from));
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
     Ok(ReducedCloud { reduced, report })
@@ -215,7 +218,7 @@ fn reconstruct_input(
         origin,
     } = Input::new(cloud, outliers(params), &mut clock)?;
     check_extent(&features)?;
-    let noise = features.noise;
+    let noise = Noise::of(&features);
     let fitted = points_to_fit(&cloud, &tree, features, params, &mut clock)?;
     drop(cloud);
     let order = if params.distances {
@@ -296,7 +299,7 @@ pub fn reconstruct_again(
     let measured = Measured {
         points: tree.points.clone(),
         order: tree.order.clone(),
-        noise: features.noise,
+        noise: Noise::of(features),
         origin: origin.clone(),
     };
     surface(measured, fitted, params, clock)
@@ -307,8 +310,25 @@ struct Measured {
     points: Vec<Vec3>,
     /// Where each point is in the cloud; empty where nobody asks.
     order: Vec<u32>,
-    noise: f32,
+    noise: Noise,
     origin: Origin,
+}
+
+/// What is known of the input's noise (standard deviations across the surface, unit frame).
+#[derive(Clone, Copy)]
+struct Noise {
+    all: f32,
+    /// The part that comes from rounded coordinates, which a reduction does not average away.
+    steps: f32,
+}
+
+impl Noise {
+    fn of(features: &Features) -> Noise {
+        Noise {
+            all: features.noise,
+            steps: features.steps,
+        }
+    }
 }
 
 /// The surface through the reduced cloud, at `positions`.
@@ -327,6 +347,7 @@ fn surface(
     let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
     drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
+    let noise = noise.all;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
     let input_of = (&input[..], stands_for);
     let fits = fit::fit(subdomains, &sites, input_of, noise, params, &mut clock)?;
@@ -338,15 +359,22 @@ fn surface(
     let evidence = evidence.at_sites(&site_of, sites.tree.points.len());
     let rules = (params.orientation, params.propagation);
     let mut signs = orient::orient(&fits, &sites, &evidence, rules, &mut clock)?;
+    let few = few::mesh(&sites.tree.points);
     // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
-    let inward = signs.look_inward(&sites);
+    let inward = few.is_none() && signs.look_inward(&sites);
     if inward {
         signs.invert();
     }
-    let field = Field::new(&fits, &signs, &sites);
-    let how = extract_params(&sites, params);
-    let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
-    drop(field);
+    let Extracted {
+        mut mesh, holes, ..
+    } = match few {
+        Some(few) => few_mesh(few, (&sites, &mut signs), params),
+        None => {
+            let field = Field::new(&fits, &signs, &sites);
+            let how = extract_params(&sites, params);
+            extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
+        }
+    };
     if inward {
         signs.invert();
     }
@@ -372,7 +400,7 @@ fn surface(
         &carried.unwrap_or_default(),
     );
     let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
-    let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
+    let distance = near_stats(&input, apart.iter().map(|a| a.distance));
     let distances = params.distances.then(|| {
         let mut points = vec![f32::NAN; origin.given];
         for (&i, apart) in order.iter().zip(&apart) {
@@ -399,6 +427,7 @@ fn surface(
         boundary_edges: topology.boundary_edges,
         non_manifold_edges: topology.non_manifold_edges,
         genus: topology.genus,
+        holes,
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
         beyond_accuracy: beyond as f64 / input.len() as f64,
@@ -415,6 +444,37 @@ fn surface(
         distances,
         report: surface_report,
     })
+}
+
+/// Statistics of the distances of `points`, without those that are far from all others: one stray would be all that they tell.
+fn near_stats(points: &[Vec3], distances: impl Iterator<Item = f64>) -> DistanceStats {
+    let each = points.iter().zip(distances);
+    DistanceStats::of(each.filter(|(p, _)| in_frame(**p)).map(|(_, d)| d))
+}
+
+/// The mesh of a few points that need no fit, looking out as the signs have it.
+///
+/// A hull has an outer side of its own: only signs that agree with each other turn it, as those of given normals do.
+fn few_mesh(few: Few, (sites, signs): (&Sites, &mut Signs), params: &SurfaceParams) -> Extracted {
+    let Few { mut mesh, closed } = few;
+    let outward: Vec<Vec3> = sites
+        .tree
+        .points
+        .iter()
+        .map(|&p| few::normal(&mesh, p))
+        .collect();
+    let agree = |(a, b): (&Vec3, &Vec3)| f64::from(a.dot(*b)).signum();
+    let pairs = outward.iter().zip(&signs.normals);
+    let agreement = pairs.map(agree).sum::<f64>() / outward.len() as f64;
+    let inverted = agreement < if closed { -AGREE } else { 0.0 };
+    if inverted {
+        mesh.invert();
+    }
+    if params.orient {
+        let turned = outward.into_iter().map(|n| if inverted { -n } else { n });
+        signs.normals = turned.collect();
+    }
+    Extracted::of(mesh, params.boundary)
 }
 
 /// Looks at positions `x y z …` without changing or refusing any.
@@ -579,13 +639,13 @@ fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
 fn sites(
     reduced: &Reduced,
     positions: &[Vec3],
-    input_noise: f32,
+    input: Noise,
     orient: bool,
     progress: &mut dyn Progress,
 ) -> Result<(Sites, Vec<Option<u32>>)> {
     // Points that the unit frame leaves out are no part of a surface.
     let framed: Vec<u32> = (0..positions.len() as u32)
-        .filter(|&i| positions[i as usize].abs().max_element() <= 1.0)
+        .filter(|&i| in_frame(positions[i as usize]))
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);
@@ -607,7 +667,7 @@ fn sites(
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
-    let noise = Scales::measure(&tree).noise.min(input_noise);
+    let noise = Scales::measure(&tree).noise.min(input.all).max(input.steps);
     let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
     Ok((sites, site_of))
 }
@@ -624,6 +684,7 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
     ExtractParams {
         resolution,
         boundary: params.boundary,
+        max_hole: params.max_hole,
         sharp: params.sharp,
         most: (params.resolution == Resolution::Auto).then(|| TRIANGLES * sites.tree.points.len()),
     }

@@ -300,6 +300,7 @@ impl Job<'_> {
             tree,
             features,
             params,
+            ..
         } = self;
         match goal {
             Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {

@@ -38,6 +38,7 @@ impl Places {
             variation: of(&all.variation),
             residual: of(&all.residual),
             noise: all.noise,
+            steps: all.steps,
         }
     }
 

@@ -134,6 +134,8 @@ pub struct SurfaceReport {
     pub non_manifold_edges: usize,
     /// Genus of each component, the largest component first ([`Topology::genus`]).
     pub genus: Vec<i64>,
+    /// Holes that were closed and rims that were left open, the widest first.
+    pub holes: Vec<Hole>,
     /// Sub-domains that were split and fitted again.
     pub refinements: usize,
     /// Residual of the joined field at the input points.
@@ -146,6 +148,17 @@ pub struct SurfaceReport {
     pub orientation_energy_before: f64,
     /// What decided which side is out.
     pub orientation: OrientationReport,
+}
+
+/// A hole of a surface, or the outer rim of an open one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Hole {
+    /// Of a hole that was closed, that of the largest disc in it (twice the largest distance of what closes it from the
+    /// points); of a rim, that of the disc whose area it encloses. Fraction of the diagonal.
+    pub diameter: f64,
+    /// Whether the surface goes on across it.
+    pub closed: bool,
 }
 
 /// The connectivity of a triangle mesh.
