@@ -306,8 +306,8 @@ mod tests {
             let on = move |p: &DVec3| {
                 let sides = p
                     .to_array()
-                    .iter()
-                    .filter(|&&x| x == 0.0 || x == f64::from(n - 1));
+                    .into_iter()
+                    .filter(|&x| x == 0.0 || x == f64::from(n - 1));
                 keep(sides.count() as i32, n)
             };
             unit(

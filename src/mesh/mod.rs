@@ -5,7 +5,7 @@
 //! 3. `holes`, `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends
 //!    (see [`extract`]).
 //! 4. `simplify`: fewer triangles where the surface is flat.
-//! 5. `caps`: membranes over the rims, where the surface has to be closed.
+//! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -16,6 +16,7 @@ pub(crate) mod band;
 pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
+pub(crate) mod disc;
 pub(crate) mod dual;
 pub(crate) mod few;
 pub mod field;
