@@ -1,11 +1,14 @@
 /**
  * `<point-weave>`: importing this defines the element. It needs three.js (an optional peer of the package).
  */
+import type { Axis, Pose } from './viewer.js';
 import type { EngineOptions, ErrorCode, PointweaveError, ReduceReport, Stage as EngineStage, SurfaceReport } from './types.js';
+
+export type { Axis, Pose } from './viewer.js';
 
 export type View = 'points' | 'reduced' | 'mesh';
 export type Loading = 'lazy' | 'eager';
-export type Up = 'auto' | 'y' | 'z' | '-y' | '-z' | 'x' | '-x';
+export type Up = 'auto' | Axis;
 /** `'fetch'` and `'read'`, then those of the engine. */
 export type Stage = 'fetch' | 'read' | EngineStage;
 
@@ -49,16 +52,6 @@ export interface PointWeaveEventMap {
   error: CustomEvent<ErrorDetail>;
   /** The job under way was stopped; nothing of it will be shown. */
   abort: CustomEvent<AbortDetail>;
-}
-
-/** Where one looks from. */
-export interface Pose {
-  /** Degrees around, 0 is the front, 90 the right. */
-  azimuth: number;
-  /** Degrees above the horizon. */
-  elevation: number;
-  /** 1 is the first look, 2 twice as near. */
-  zoom: number;
 }
 
 /** Every sentence that people see or hear. */

@@ -3,5 +3,7 @@ import { makeApi } from './engine/api.js';
 import { platform } from './engine/platform.node.js';
 
 export { PointweaveError } from './engine/errors.js';
+export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';
+export { sideInWords } from './engine/side.js';
 export const { createEngine, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);

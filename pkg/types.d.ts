@@ -6,18 +6,37 @@
  * Positions go in and come out in the caller's own frame and unit.
  */
 
+import type { ReconstructOptions, ReduceOptions } from './types.options.js';
+
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
 export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z x y z … `Float64Array` keeps georeferenced clouds exact. Results have the type of the input. */
   positions: Positions;
   /** r g b r g b …, 0-255. */
   colors?: Uint8Array;
-  /** Unit vectors x y z …; their directions are taken for the surface's, their signs too where `orient` is false. */
+  /**
+   * Unit vectors x y z …; their directions are taken for the surface's, and their signs as far as they agree with each other, all of
+   * them where `orient` is false. Zero, NaN and infinite ones are none.
+   */
   normals?: Float32Array;
   /** One value a point: intensity, classification, time … */
   attributes?: Record<string, Float32Array>;
   /** Added to the positions to give world coordinates; carried to every result. */
   origin?: [number, number, number];
+  /** Where the points were seen from; carried to every reduced cloud. */
+  viewpoints?: Viewpoints;
+  /** Which way is up, in the positions' frame, of any length but 0; carried to every result as a unit vector. */
+  up?: [number, number, number];
+  /** All was seen from high above, along `up` (z without it), as airborne scans are; carried to every reduced cloud. */
+  seenFromAbove?: boolean;
+}
+
+/** Places of a scanner or camera. */
+export interface Viewpoints {
+  /** x y z of each, in the frame and unit of the cloud's positions; at least one. */
+  positions: Float64Array;
+  /** For each point the index of the place that it was seen from, or 0xffffffff where that is not known. Default: the first saw all. */
+  of?: Uint32Array;
 }
 
 /** The steps of a call, in the order in which they run. */
@@ -44,111 +63,7 @@ export interface CallOptions {
   transfer?: boolean;
 }
 
-/** How much a reduction keeps: exactly one of them. */
-export type Target =
-  /** Share of the points, (0, 1]. The count of the result is exact. */
-  | { ratio: number }
-  /** Exactly this many points. */
-  | { count: number }
-  /**
-   * The fewest points whose local surfaces have 99 % of the surface within this distance, a fraction, (0, 1). Takes mostly two
-   * to six reductions, at most eleven. Noise hides surfaces finer than 1.5 times itself: `report.reason` then says what was taken.
-   */
-  | { tolerance: number }
-  /** The paper's λ, (0, 1]: sub-domains whose surface variation is under it are reduced, the others kept. */
-  | { flatness: number };
-
-/** How the values of the input points become the value of the reduced point that stands for them. */
-export type Carry =
-  /** Their mean, weighted by membership: for measurements. */
-  | 'mean'
-  /** The value with the largest sum of memberships, of equals the smallest: for labels. A colour is one value. */
-  | 'majority'
-  /** That of the nearest input point. */
-  | 'nearest';
-
-export interface ReduceOptions {
-  /** Default `{ ratio: 1/3 }`. */
-  target?: Target;
-  /** `'paper'` is sections 3.1-3.2 of the paper to the letter; `'adaptive'` (the default) is our best. */
-  method?: 'adaptive' | 'paper';
-  /** m of eq. 1-5, (1, 100]. Default 1.5 (`'adaptive'`), 2 (`'paper'`). */
-  fuzzifier?: number;
-  /**
-   * ε of eq. 6, (0, 1]. `'paper'` stops when no membership changes by more, default 0.001; `'adaptive'` when no
-   * centre moves by more than this share of the wanted spacing, default 0.01.
-   */
-  epsilon?: number;
-  /** At least 1. Default 5 (`'adaptive'`), 100 (`'paper'`). */
-  maxIterations?: number;
-  /** The norm-inducing matrix A of eq. 1, for `'paper'`. Default `'euclidean'`. */
-  norm?: 'euclidean' | 'diagonal' | 'mahalanobis';
-  /** How many clusters a sub-domain gets: in proportion to the target (default), or by eq. 7. */
-  clusters?: 'proportional' | 'validity';
-  /** 0 = even spacing … 1 = strongest concentration on curved regions. Default 0.5. */
-  curvatureWeight?: number;
-  /**
-   * Where a centre goes: `'implicit'` on the surface (default), `'mesh'` best for triangles between the points,
-   * `'center'` the raw centre, `'sample'` the nearest input point.
-   */
-  placement?: 'implicit' | 'mesh' | 'center' | 'sample';
-  /** Of the random memberships that the paper's method starts from, an integer from 0. Default 0. */
-  seed?: number;
-  /** Most points of a sub-domain, 8 to 65536. Default: follows the target (`'adaptive'`), 256 (`'paper'`). */
-  cellPoints?: number;
-  /** Deepest level of the octree, 1 to 21. Default 21. */
-  maxDepth?: number;
-  /**
-   * How the cloud's attributes are carried to the reduced points and on to a mesh, by name; `colors` names the colours. Default `{}`:
-   * every one is `'mean'`.
-   */
-  attributes?: Record<string, Carry>;
-  /** Say of every input point which reduced point it belongs to ({@link ReducedCloud.assignment}). Default `false`. */
-  assignment?: boolean;
-  /** Say where the sub-domains of the octree are ({@link ReducedCloud.cells}). Default `false`. */
-  cells?: boolean;
-  /**
-   * `'drop'` leaves out isolated points (stray returns, and clumps of up to eight far from the rest) before the
-   * reduction, unless they are more than half of all; fractions are then of the diagonal of the others. Default `'keep'`.
-   */
-  outliers?: 'keep' | 'drop';
-}
-
-export interface ReconstructOptions {
-  /**
-   * How the cloud is reduced first; `false` sends every point to the fit, and attributes are means on the mesh. Default
-   * {@link ReduceOptions}' defaults.
-   */
-  reduce?: ReduceOptions | false;
-  /** Residual that the fit has to reach, a fraction, (0, 1). Default 6e-4, the paper's. */
-  accuracy?: number;
-  /** φ of eq. 9: r³ (`'triharmonic'`, the default), r (`'biharmonic'`), r² log r (`'thin-plate'`, the paper's). */
-  kernel?: 'biharmonic' | 'triharmonic' | 'thin-plate';
-  /** Ridge on the diagonal of eq. 11, from 0; `'auto'` (default) follows the noise that `inspect` estimates. */
-  smoothing?: number | 'auto';
-  /** Infer which side is out (default); `false` takes the cloud's own normals as they are. */
-  orient?: boolean;
-  /** `'paper'` is Algorithm 1 as printed; `'global'` (default) orients the strongest agreements first. */
-  propagation?: 'global' | 'paper';
-  /**
-   * Edge length of the extraction grid, a fraction, 1e-4 to 0.25: the mesh is as dense everywhere. `'auto'` (default)
-   * follows the spacing and has at most three triangles for each fitted point, more where the surface is curved.
-   */
-  resolution?: number | 'auto';
-  /** Keep creases in the mesh. Default `true`. */
-  sharp?: boolean;
-  /** `'auto'` (default) trims the surface where there were no points, `'closed'` closes it, `'open'` always trims. */
-  boundary?: 'auto' | 'closed' | 'open';
-  /** Say of every input point and every vertex how far scan and mesh are apart there ({@link SurfaceMesh.distances}). Default `false`. */
-  distances?: boolean;
-  /**
-   * Remember in the engine's worker what was measured of this cloud, and its reduction: the next `reconstruct` with `keep` does
-   * not do again what would come out the same, and has no time for it in its report. The bytes are the same. Takes about 100
-   * bytes a point until a call without it or another cloud. An abort keeps what was done before it where memory can be shared,
-   * and forgets all elsewhere. Default `false`.
-   */
-  keep?: boolean;
-}
+export * from './types.options.js';
 
 /** Distances as fractions. */
 export interface Distances {
@@ -156,6 +71,26 @@ export interface Distances {
   rms: number;
   max: number;
 }
+
+/** Something about a result that may not be as it should. */
+export interface Doubt {
+  /** Stable and meant for programs: {@link DoubtCode}, and more with time. */
+  code: DoubtCode | (string & {});
+  /** A sentence. */
+  message: string;
+  /** The share of the surface that it is about, 0 to 1, where that is known. */
+  share?: number;
+}
+
+export type DoubtCode =
+  /** Nothing says which side is out. */
+  | 'side-guessed'
+  /** Two things that are known of the cloud say different sides. */
+  | 'sources-disagree'
+  /** A region looks away from where it was seen from. */
+  | 'contradicts-sensor'
+  /** A large part hangs on little, and may be the wrong way round. */
+  | 'weak-tie';
 
 /** What ran, where and for how long. */
 export interface RunReport {
@@ -168,6 +103,8 @@ export interface RunReport {
   threads: number;
   /** Why this build ran, and why something was not done as it was asked for. */
   reason: string;
+  /** What may not be as it should; empty for what is clear. */
+  doubts: Doubt[];
 }
 
 export interface ReduceReport extends RunReport {
@@ -231,7 +168,45 @@ export interface SurfaceReport extends ReduceReport {
   orientationEnergy: number;
   /** The same before conflicts were solved over the whole graph. */
   orientationEnergyBefore: number;
+  /** What decided which side is out. */
+  orientation: OrientationReport;
 }
+
+/** What decided which side is out. Shares are of the surface, 0 to 1. */
+export interface OrientationReport {
+  /** Every source that said anything, and how far the result agrees with it; the shares add up to 1. */
+  sources: {
+    source: OrientationSource;
+    /** Of what it decided. */
+    share: number;
+    /** Of that about which it says anything, the share where the result agrees. */
+    agreement: number;
+  }[];
+  /** Share whose side is a guess. */
+  guessed: number;
+  /** The part with over 1 % of the surface that hangs on the least. */
+  weakestTie?: {
+    /** Share that would turn. */
+    share: number;
+    /** What holds it to the others, by its size: parts of one smooth sheet have 1.5 and more. */
+    strength: number;
+  };
+}
+
+export type OrientationSource =
+  /** The cloud's own normals. */
+  | 'normals'
+  | 'viewpoints'
+  /** That it was seen from above. */
+  | 'above'
+  /** That it looks as a depth camera at 0 0 0 sees. */
+  | 'camera'
+  /** That it encloses something. */
+  | 'shell'
+  /** The option, or the rule for sheets, that up is out. */
+  | 'up'
+  /** Nothing. */
+  | 'guess';
 
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z of each vertex. */
@@ -243,6 +218,7 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   colors?: Uint8Array;
   attributes?: Record<string, Float32Array>;
   origin?: [number, number, number];
+  up?: [number, number, number];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -405,6 +381,15 @@ export const sample: Engine['sample'];
 
 /** Resolves when the engine is ready to compute. */
 export function createEngine(options?: EngineOptions): Promise<Engine>;
+
+/**
+ * The mesh with its other side out: triangles and normals, those of its cloud too. With `triangle`, an index, only the piece that this
+ * triangle belongs to. The other arrays are those of `mesh`.
+ */
+export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: number }): T;
+
+/** What told which side is out, for people: `report.orientation` as part of a sentence. */
+export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
 
 /** What is taken for each option that is not given; `undefined` where that follows from other options. */
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };

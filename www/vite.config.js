@@ -42,6 +42,8 @@ export default defineConfig({
   worker: { format: 'es' },
   build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
   // The package is a neighbour of this folder, outside Vite's root.
+  // It has no packages of its own: three.js is the page's.
+  resolve: { dedupe: ['three'] },
   server: { headers: isolation, fs: { allow: ['..'] } },
   preview: { headers: isolation },
 });

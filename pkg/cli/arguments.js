@@ -1,7 +1,9 @@
 /** The command line to what is to be done. Whatever is wrong with it is found here, before a file is opened. */
 import { basename, extname, join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { ENGINE, nearest } from '../engine/options.js';
+import { ENGINE } from '../engine/options.js';
+import { nearest } from '../engine/rules.js';
+import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';
 import { UsageError } from './usage.js';
@@ -21,6 +23,7 @@ import { UsageError } from './usage.js';
  * @property {string} [folder] for the results of a batch
  * @property {boolean} json
  * @property {'auto' | number} threads
+ * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
  * @property {Record<string, any>} own options of the function that has the command's name
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
@@ -55,7 +58,7 @@ function parseFlags(command, argv) {
     json: { type: 'boolean' },
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
-    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' } }),
+    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS }),
     ...parserOptions(flagsOf(command)),
   };
   try {
@@ -93,7 +96,7 @@ function task(command, values, inputs) {
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
   const { own, write } = optionsFrom(command, values);
-  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), own, write };
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, write };
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;

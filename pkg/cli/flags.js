@@ -1,9 +1,11 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
 import { PointweaveError } from '../engine/errors.js';
-import { TABLES, TARGETS } from '../engine/options.js';
+import { TARGETS } from '../engine/options-table.js';
+import { TABLES } from '../engine/options.js';
+import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
-/** @import { Rule } from '../engine/options.js' */
+/** @import { Rule, Table } from '../engine/rules.js' */
 /** @typedef {'reduce' | 'reconstruct' | 'inspect'} Command */
 
 /**
@@ -13,10 +15,16 @@ import { UsageError } from './usage.js';
  * @property {'target' | 'reduce' | 'reconstruct' | 'write' | 'none'} group
  * @property {Rule} rule
  * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
+ * @property {string} words what it does, in one line
  */
 
-/** Not flags: what has one of another shape, what the file's name says, and what no file holds. */
-const LEFT_OUT = { reduce: ['target', 'assignment', 'cells'], reconstruct: ['reduce', 'distances', 'keep'], write: ['format'] };
+/** What each flag does, by its option's name. An option without words has no flag. @type {Record<string, string>} */
+export const WORDS = {
+  ...FLAGS,
+  encoding: 'of a PLY file',
+  quantize: 'a GLB file with positions rounded to 1/65535 and normals to 1/127, in half the room',
+  meshopt: 'a compressed GLB file; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer',
+};
 
 /**
  * @param {Command} command
@@ -24,26 +32,24 @@ const LEFT_OUT = { reduce: ['target', 'assignment', 'cells'], reconstruct: ['red
  */
 export function flagsOf(command) {
   if (command === 'inspect') return [];
-  const reduce = [...flags('target', TARGETS, []), ...flags('reduce', TABLES.reduce, LEFT_OUT.reduce)];
-  const surface = [none, ...flags('reconstruct', TABLES.reconstruct, LEFT_OUT.reconstruct)];
-  return [...reduce, ...(command === 'reconstruct' ? surface : []), ...flags('write', TABLES.write, LEFT_OUT.write)];
+  const reduce = [...flags('target', TARGETS), ...flags('reduce', TABLES.reduce)];
+  const { reduce: nested, ...surface } = TABLES.reconstruct;
+  /** `reduce: false`. @type {Flag} */
+  const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
+  return [...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface)] : []), ...flags('write', TABLES.write)];
 }
-
-/** `reduce: false`. @type {Flag} */
-const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: TABLES.reconstruct.reduce, kind: 'value' };
 
 /**
  * @param {Flag['group']} group
- * @param {Record<string, Rule>} table
- * @param {string[]} leftOut
+ * @param {Table} table
  * @returns {Flag[]}
  */
-function flags(group, table, leftOut) {
-  const keys = Object.keys(table).filter((key) => !leftOut.includes(key));
+function flags(group, table) {
+  const keys = Object.keys(table).filter((key) => key in WORDS);
   return keys.map((key) => {
     const rule = table[key];
     const kind = key === 'attributes' ? 'list' : rule.accepts(true, '') ? 'switch' : 'value';
-    return { name: kebab(key), key, group, rule, kind };
+    return { name: kebab(key), key, group, rule, kind, words: WORDS[key] };
   });
 }
 

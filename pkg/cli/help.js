@@ -1,41 +1,9 @@
-/** What `--help` prints. The flags come from the tables of options; only the words for each are here. */
+/** What `--help` prints. */
+import { CLOUD_ROWS } from './cloud-flags.js';
 import { FORMATS } from './formats.js';
 import { flagsOf } from './flags.js';
 
 /** @import { Command, Flag } from './flags.js' */
-
-/** One line for each option, by its name. @type {Record<string, string>} */
-export const WORDS = {
-  ratio: 'keep this share of the points',
-  count: 'keep exactly so many points',
-  tolerance: 'keep the fewest points whose surface stays within this share of the diagonal',
-  flatness: "the paper's lambda: reduce what is flatter, keep the rest",
-  method: 'how points are chosen',
-  fuzzifier: 'm of fuzzy c-means',
-  epsilon: 'stop when less than this changes',
-  maxIterations: 'sweeps of fuzzy c-means, at most',
-  norm: "the norm, for the paper's method",
-  clusters: 'how many clusters a sub-domain gets',
-  curvatureWeight: 'from even spacing to concentration on curved regions',
-  placement: 'where a point goes',
-  seed: "of the random start, for the paper's method",
-  cellPoints: 'most points of a sub-domain',
-  maxDepth: 'deepest level of the octree',
-  attributes: 'how an attribute is carried to the result, can be repeated: NAME=mean, majority or nearest',
-  outliers: 'whether isolated points are dropped first',
-  reduce: 'fit every point',
-  accuracy: 'residual that the fit has to reach, a share of the diagonal',
-  kernel: 'of the radial basis functions',
-  smoothing: 'of the fit; auto follows the measured noise',
-  orient: "infer which side is out: the file's normals say it",
-  propagation: 'how orientation spreads',
-  resolution: 'edge length of the mesh, a share of the diagonal',
-  sharp: 'keep creases',
-  boundary: 'close the surface, or let it end where points do',
-  encoding: 'of a PLY file',
-  quantize: 'a GLB file with positions rounded to 1/65535 and normals to 1/127, in half the room',
-  meshopt: 'a compressed GLB file; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer',
-};
 
 /** @type {Record<Command, string>} */
 const DOES = {
@@ -83,7 +51,8 @@ export function help(command) {
   const flags = flagsOf(command);
   const output = command === 'inspect' ? '' : ` -o result.${command === 'reduce' ? 'ply' : 'glb'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
-  const listed = [...sections, ['General', [...(command === 'inspect' ? [] : OUTPUT), ...COMMON]]];
+  const works = command !== 'inspect';
+  const listed = [...sections, ['Scan', works ? CLOUD_ROWS : []], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   return `pointweave ${command}: ${DOES[command]}
 
@@ -95,8 +64,7 @@ ${filled.map(([title, lines]) => `${title}\n${rows(/** @type {string[][]} */ (li
 }
 
 /** @param {Flag} flag */
-function row({ name, key, group, rule, kind }) {
-  const words = WORDS[key];
+function row({ name, group, rule, kind, words }) {
   if (group === 'none') return [`--${name}`, words];
   if (kind === 'list') return [`--${name} NAME=HOW`, words];
   if (kind === 'switch') return [rule.fallback ? `--no-${name}` : `--${name}`, `${rule.fallback ? 'do not ' : ''}${words}`];

@@ -3,14 +3,16 @@ import { createEngine } from '../index.node.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
+import { withSaid } from './cloud-flags.js';
 import { checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { UsageError } from './usage.js';
-import { infoLines, pointsOf, reportLine } from './words.js';
+import { doubtLines, infoLines, pointsOf, reportLine } from './words.js';
 
 /** @import { Engine } from '../types.js' */
 /** @import { Job, Task } from './arguments.js' */
 
-/** @typedef {Job & ({ report: object, text: string } | { error: unknown })} Outcome */
+/** @typedef {{ report: object, text: string, doubts: string[] }} Result */
+/** @typedef {Job & (Result | { error: unknown })} Outcome */
 
 /**
  * @param {Task} task
@@ -78,9 +80,9 @@ async function attempt(engine, task, job, done, signal) {
  * @param {Task} task
  * @param {Job} job
  * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
- * @returns {Promise<{ report: object, text: string }>}
+ * @returns {Promise<Result>}
  */
-async function perform(engine, { command, own, write, format }, { input, output }, watch) {
+async function perform(engine, { command, cloud: said, own, write, format }, { input, output }, watch) {
   const { signal } = watch;
   if (output !== undefined && output !== '-') await checkPlace(output);
   const name = input === '-' ? undefined : input;
@@ -91,16 +93,16 @@ async function perform(engine, { command, own, write, format }, { input, output 
   }
   if (command === 'inspect') {
     const info = await engine.inspect(cloud, watch);
-    return { report: { ...info, file }, text: infoLines(info, cloud) };
+    return { report: { ...info, file }, text: infoLines(info, cloud), doubts: [] };
   }
-  const result = await engine[command](cloud, { ...own, ...watch, transfer: true });
+  const result = await engine[command](withSaid(cloud, said), { ...own, ...watch, transfer: true });
   const { report } = result;
   if (output !== undefined) {
     const bytes = await engine.write(result, { ...write, format: /** @type {any} */ (format), signal, transfer: true });
     if (output === '-') await print(bytes);
     else await writeOutput(output, bytes, signal);
   }
-  return { report, text: reportLine(report, file) };
+  return { report, text: reportLine(report, file), doubts: doubtLines(report) };
 }
 
 /** @param {Task} task @param {Outcome} outcome */
@@ -110,7 +112,7 @@ function tell({ command, json }, outcome) {
   if ('error' in outcome) say(`${input}: ${sentence(outcome.error)}`);
   else if (json) return;
   else if (command === 'inspect') process.stdout.write(`${input}\n${outcome.text}`);
-  else say(`${input} → ${output}: ${outcome.text}`);
+  else [`${input} → ${output}: ${outcome.text}`, ...outcome.doubts.map((doubt) => `${input}: ${doubt}`)].forEach(say);
 }
 
 /**

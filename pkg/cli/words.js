@@ -1,4 +1,5 @@
 /** Results as people read them. */
+import { sideInWords } from '../engine/side.js';
 
 /** @import { CloudInfo, FileCloud, ReduceReport, SurfaceReport } from '../types.js' */
 
@@ -18,19 +19,26 @@ export function reportLine(report, { dropped }) {
   const { inputPoints, outputPoints, distance, totalMs } = report;
   const mesh = 'triangles' in report ? ` → ${whole(report.triangles)} triangles` : '';
   const error = `${short(100 * distance.rms, 2)} % of the diagonal off (rms)`;
+  const side = 'orientation' in report ? `; ${sideInWords(report)}` : '';
   const left = dropped > 0 ? `; ${pointsOf(dropped)} that ${dropped === 1 ? 'is' : 'are'} not finite left out` : '';
-  return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${left}`;
+  return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${side}${left}`;
+}
+
+/** @param {ReduceReport | SurfaceReport} report */
+export function doubtLines({ doubts }) {
+  return doubts.map(({ message }) => `doubtful: ${message}`);
 }
 
 /**
  * @param {CloudInfo} info
  * @param {FileCloud} cloud
  */
-export function infoLines(info, { colors, normals, attributes = {}, file }) {
+export function infoLines(info, { colors, normals, attributes = {}, viewpoints, up, seenFromAbove, file }) {
   // To a millionth of the diagonal, however far away the cloud is.
   const decimals = Math.min(Math.max(6 - Math.floor(Math.log10(info.diagonal || 1)), 0), 20);
   const corner = (/** @type {number[]} */ values) => values.map((x) => Number(x.toFixed(decimals))).join(' ');
-  const also = [colors && 'colours', normals && 'normals', ...Object.keys(attributes)].filter(Boolean).join(', ');
+  const places = viewpoints && viewpoints.positions.length / 3;
+  const also = [colors && 'colours', normals && 'normals', places && `${places} viewpoint${places === 1 ? '' : 's'}`, ...Object.keys(attributes)].filter(Boolean).join(', ');
   const rows = [
     ['points', whole(info.count)],
     ['not finite', file.dropped > 0 ? `${whole(file.dropped)} more, left out` : '0'],
@@ -38,6 +46,7 @@ export function infoLines(info, { colors, normals, attributes = {}, file }) {
     ['also has', also || 'nothing else'],
     ...(file.replaced > 0 ? [['of that', `${whole(file.replaced)} not finite, taken for 0`]] : []),
     ...(file.faces > 0 ? [['faces', `${whole(file.faces)}, not read`]] : []),
+    ...(up ? [['up', `${corner(up)}${seenFromAbove ? ', seen from above' : ''}`]] : []),
     ['lowest corner', corner(info.bounds.min)],
     ['highest corner', corner(info.bounds.max)],
     ['diagonal', short(info.diagonal)],

@@ -1,22 +1,32 @@
 /** The element itself: attributes and the viewport come in, jobs and events go out. */
 import { PointweaveError } from '../engine/errors.js';
+import { listenToKeys } from '../viewer/keyboard.js';
+import { calm, inSight } from '../viewer/watching.js';
 import { Reflecting } from './attributes.js';
-import { layerColors } from './colors.js';
-import { listenToKeys } from './keyboard.js';
 import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
-import { openSource } from './source.js';
+import { isNamedGlb, openSource } from './source.js';
 import { Speech } from './speech.js';
-import { calm, viewport } from './watching.js';
+import { inReach } from './watching.js';
 import { WORDS } from './words.js';
 
 /** @import { EngineOptions } from '../types.js' */
 /** @import { AbortReason, ErrorDetail, LoadDetail, PointWeaveEventMap, Stage, View, Words } from '../element.js' */
-/** @import { Picture } from './picture.js' */
+/** @import { Viewer } from '../viewer.js' */
 /** @import { Glb, Scan } from './source.js' */
 
-/** More device pixels than this in a CSS pixel cost much and show nothing. */
-const FINEST = 2;
+/** Room for the toolbar, in CSS pixels. */
+const TOOLBAR = 64;
+
+/** @typedef {{ choose: (view: View) => void, pause: () => void }} Hands */
+
+/** Keys besides those of the viewer. @type {Record<string, (hands: Hands) => void>} */
+const KEYS = {
+  1: ({ choose }) => choose('points'),
+  2: ({ choose }) => choose('reduced'),
+  3: ({ choose }) => choose('mesh'),
+  ' ': ({ pause }) => pause(),
+};
 
 /** Work under way. @typedef {{ src: string, controller: AbortController, share: number, stage: Stage }} Job */
 
@@ -31,8 +41,8 @@ export class PointWeaveElement extends Reflecting {
   #parts = buildParts(this.attachShadow({ mode: 'open', delegatesFocus: true }));
   #panels = new Panels(this.#parts);
   #speech = new Speech(this.#parts.spoken);
-  /** @type {Picture | undefined} */
-  #picture;
+  /** @type {Viewer | undefined} */
+  #viewer;
   /** What `src` holds, once it is there. @type {Glb | Scan | undefined} */
   #source;
   /** @type {Job | undefined} */
@@ -42,8 +52,6 @@ export class PointWeaveElement extends Reflecting {
   #seen = false;
   #paused = false;
   #scheduled = false;
-  #size = { width: 0, height: 0, ratio: 1 };
-  #resizes = new ResizeObserver(([entry]) => this.#resized(entry));
 
   constructor() {
     super();
@@ -56,20 +64,18 @@ export class PointWeaveElement extends Reflecting {
     image.addEventListener('error', () => this.#panels.setPoster(''));
     poster.addEventListener('slotchange', () => this.#panels.showPoster(!this.#loaded));
     for (const { input, view } of choices) input.addEventListener('change', () => this.#choose(view));
-    canvas.addEventListener('transitionend', () => this.#picture?.paintIn(layerColors(canvas)));
-    listenToKeys(canvas, () => (this.controls && this.#picture ? this.#hands : undefined));
+    canvas.addEventListener('transitionend', () => this.#color());
+    listenToKeys(canvas, KEYS, () => (this.controls && this.#viewer ? this.#hands : undefined));
     this.upgrade();
   }
 
   connectedCallback() {
     if (this.#attached) return;
     this.#attached = true;
-    const { near, seen } = viewport();
-    near.add(this, (isNear) => isNear && this.#come());
-    seen.add(this, (isSeen) => this.#see(isSeen));
-    this.#observe();
+    inReach().add(this, (isNear) => isNear && this.#come());
+    inSight().add(this, (isSeen) => this.#see(isSeen));
     calm().addEventListener('change', this.#dress);
-    this.#picture?.attach();
+    this.#viewer?.resume();
     this.#panels.label(PointWeaveElement.words);
     this.#describe();
     this.#dress();
@@ -83,14 +89,12 @@ export class PointWeaveElement extends Reflecting {
       if (this.isConnected || !this.#attached) return;
       this.#attached = false;
       this.#abort('removed');
-      const { near, seen } = viewport();
-      near.delete(this);
-      seen.delete(this);
+      inReach().delete(this);
+      inSight().delete(this);
       this.#see(false);
-      this.#resizes.disconnect();
       calm().removeEventListener('change', this.#dress);
       this.#speech.hush();
-      this.#picture?.detach();
+      this.#viewer?.suspend();
     });
   }
 
@@ -125,7 +129,7 @@ export class PointWeaveElement extends Reflecting {
         this.#dress();
         break;
       case 'up':
-        this.#picture?.stand(this.up);
+        if (this.#viewer) this.#viewer.up = this.up;
         break;
       case 'loading':
         if (this.loading === 'eager' && this.#attached) this.#come();
@@ -151,17 +155,17 @@ export class PointWeaveElement extends Reflecting {
   }
 
   resetCamera() {
-    this.#picture?.orbit.home();
+    this.#viewer?.home();
   }
 
   /** The picture as it is shown, without background: to make a poster of. @param {string} [type] @param {number} [quality] */
   toBlob(type, quality) {
-    this.#picture?.paint();
+    if (this.#viewer) return this.#viewer.toBlob(type, quality);
     return new Promise((/** @type {(blob: Blob | null) => void} */ resolve) => this.#parts.canvas.toBlob(resolve, type, quality));
   }
 
   get #loaded() {
-    return Boolean(this.#source && this.#picture?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
+    return Boolean(this.#source && this.#viewer?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
   }
 
   get #target() {
@@ -179,8 +183,14 @@ export class PointWeaveElement extends Reflecting {
   /** What was out of sight has not heard of new colours. @param {boolean} seen */
   #see(seen) {
     this.#seen = seen;
-    if (seen) this.#picture?.paintIn(layerColors(this.#parts.canvas));
-    this.#picture?.see(seen);
+    if (seen) this.#color();
+  }
+
+  /** The layers' colours, which the canvas carries as colours that it has no use for itself (sheet.js). */
+  #color() {
+    if (!this.#viewer) return;
+    const { color, caretColor, columnRuleColor } = getComputedStyle(this.#parts.canvas);
+    this.#viewer.colors = { mesh: color, points: caretColor, reduced: columnRuleColor };
   }
 
   /** However many attributes change at once, what follows from them is done once. */
@@ -218,22 +228,26 @@ export class PointWeaveElement extends Reflecting {
     this.#panels.begin();
     this.#speech.begin();
     try {
-      const [picture, source] = await Promise.all([this.#ready(), this.#source ?? openSource(src, this.view, work)]);
+      const [viewer, source] = await Promise.all([this.#ready(), this.#source ?? openSource(src, this.view, work)]);
       signal.throwIfAborted();
       if (!this.#source) {
-        await (source.kind === 'glb' ? picture.openGlb(source.bytes, signal) : picture.openCloud(source.cloud));
+        const shown = source.kind === 'glb' ? await (await import('../viewer/glb.js')).readGlb(source.bytes) : { ...source.cloud, normals: undefined };
+        signal.throwIfAborted();
+        viewer.show(shown);
         this.#source = source;
         this.#showBest();
       }
-      while (source.kind === 'scan' && !picture.has(this.view)) {
+      while (source.kind === 'scan' && !viewer.has(this.view)) {
         await source.make(this.view, this.#target, work);
         signal.throwIfAborted();
-        if (source.reduced) picture.addComputed(source.reduced, source.mesh);
+        const { reduced = null, mesh = null } = source;
+        viewer.set('reduced', reduced && { ...reduced, oriented: Boolean(mesh) });
+        viewer.set('mesh', mesh);
       }
       if (job.share < 1) this.#progress(job, job.stage, 1);
       signal.throwIfAborted(); // by who heard of that
       this.#job = undefined;
-      this.#finish(src, source, picture);
+      this.#finish(src, source, viewer);
     } catch (error) {
       if (signal.aborted) return; // #abort has said so
       this.#job = undefined;
@@ -242,31 +256,32 @@ export class PointWeaveElement extends Reflecting {
     }
   }
 
-  /** The picture, made when it is first needed. */
+  /** The viewer, made when it is first needed, and what reads a GLB where one is likely to come. */
   async #ready() {
-    const { Picture } = await import('./picture.js').catch((error) => {
+    const glb = isNamedGlb(this.src) && import('../viewer/glb.js');
+    const [{ createViewer }] = await Promise.all([import('../viewer/viewer.js'), glb]).catch((error) => {
       throw new PointweaveError({ code: 'load-failed', message: `three.js did not load: ${error.message}` });
     });
-    if (!this.#picture) {
-      const { canvas } = this.#parts;
-      this.#picture = new Picture(canvas);
-      this.#picture.paintIn(layerColors(canvas));
-      this.#picture.stand(this.up);
-      if (this.#attached) this.#picture.attach();
-      this.#picture.see(this.#seen);
-      this.#dress();
-    }
-    return this.#picture;
+    if (this.#viewer) return this.#viewer;
+    const viewer = createViewer(this.#parts.canvas, { interactive: this.controls, up: this.up });
+    viewer.addEventListener('move', ({ detail: { by } }) => {
+      if (by === 'keys') this.#speech.atRest(() => PointWeaveElement.words.pose(viewer.pose));
+    });
+    if (!this.#attached) viewer.suspend();
+    this.#viewer = viewer;
+    this.#color();
+    this.#dress();
+    return viewer;
   }
 
-  /** @param {string} src @param {Glb | Scan} source @param {Picture} picture */
-  #finish(src, source, picture) {
+  /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer */
+  #finish(src, source, viewer) {
     this.#panels.end();
     const view = this.#showBest();
-    picture.paint();
+    viewer.draw();
     const result = source.kind === 'scan' ? source.of(view) : undefined;
     const report = result && 'report' in result ? /** @type {LoadDetail['report']} */ (result.report) : null;
-    const detail = { src, kind: source.kind, view, ...picture.size(view), report };
+    const detail = { src, kind: source.kind, view, ...viewer.size(view), report };
     const { words } = PointWeaveElement;
     this.#speech.say(`${this.alt || words.untitled}. ${words.shown(detail)}`);
     this.#send('load', detail);
@@ -310,7 +325,7 @@ export class PointWeaveElement extends Reflecting {
   #forget() {
     this.#abort('src');
     this.#source = undefined;
-    this.#picture?.clear();
+    this.#viewer?.clear();
     this.#panels.hideError();
     this.#panels.showPoster(true);
     this.#dress();
@@ -321,7 +336,7 @@ export class PointWeaveElement extends Reflecting {
     if (this.#source?.kind !== 'scan') return; // the job that fetches will ask for the target when it is there
     this.#abort('target');
     this.#source.forget();
-    this.#picture?.forgetComputed();
+    for (const view of /** @type {const} */ (['reduced', 'mesh'])) this.#viewer?.set(view, null);
     this.#showBest();
   }
 
@@ -333,13 +348,13 @@ export class PointWeaveElement extends Reflecting {
 
   /** The view that is asked for, or what there is instead. @returns {View} */
   #best() {
-    return [this.view, ...VIEWS.toReversed()].find((view) => this.#picture?.has(view)) ?? this.view;
+    return [this.view, ...VIEWS.toReversed()].find((view) => this.#viewer?.has(view)) ?? this.view;
   }
 
   /** Says which view it is. */
   #showBest() {
     const view = this.#best();
-    this.#picture?.show(view);
+    if (this.#viewer) this.#viewer.view = view;
     if (this.#loaded || !this.#panels.hasPoster) this.#panels.showPoster(false);
     this.#dress();
     return view;
@@ -350,12 +365,12 @@ export class PointWeaveElement extends Reflecting {
     if (!this.#views.includes(view) || view === this.view) return;
     this.view = view;
     this.dispatchEvent(new Event('change'));
-    if (this.#picture?.has(view)) this.#speech.say(PointWeaveElement.words.shown({ view, ...this.#picture.size(view) }));
+    if (this.#viewer?.has(view)) this.#speech.say(PointWeaveElement.words.shown({ view, ...this.#viewer.size(view) }));
   }
 
   /** What can be chosen: all of a scan, for it is computed; what there is in a GLB. */
   get #views() {
-    return this.#source?.kind === 'glb' ? this.#picture?.views ?? [] : [...VIEWS];
+    return this.#source?.kind === 'glb' ? VIEWS.filter((view) => this.#viewer?.has(view)) : [...VIEWS];
   }
 
   /** Brings what can be handled in line with the attributes. */
@@ -365,9 +380,10 @@ export class PointWeaveElement extends Reflecting {
     const view = this.#source?.kind === 'glb' ? this.#best() : this.view;
     const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
-    this.#picture?.resize(this.#size, controls);
-    this.#picture?.orbit.enable(controls);
-    this.#picture?.orbit.turnSlowly(turns && !this.#paused);
+    if (!this.#viewer) return;
+    this.#viewer.insets = { bottom: controls ? TOOLBAR : 0 };
+    this.#viewer.interactive = controls;
+    this.#viewer.autoRotate = turns && !this.#paused;
   };
 
   /** Without controls it is an image, with them something to handle. */
@@ -393,40 +409,8 @@ export class PointWeaveElement extends Reflecting {
     else await this.requestFullscreen();
   }
 
-  /** What the keys move. @type {import('./keyboard.js').Hands} */
-  #hands = {
-    turn: (right, over) => this.#move((orbit) => orbit.turn(right, over)),
-    zoom: (factor) => this.#move((orbit) => orbit.zoom(factor)),
-    home: () => this.#move((orbit) => orbit.home()),
-    choose: (view) => this.#choose(view),
-    pause: () => this.#pause(),
-  };
-
-  /** Moves, and says where one looks from then. @param {(orbit: Picture['orbit']) => void} how */
-  #move(how) {
-    const orbit = this.#picture?.orbit;
-    if (!orbit) return;
-    how(orbit);
-    this.#speech.atRest(() => PointWeaveElement.words.pose(orbit.pose));
-  }
-
-  /** The size is told once at the start, and again when the window goes to a screen of other pixels. */
-  #observe() {
-    const { canvas } = this.#parts;
-    this.#resizes.disconnect();
-    try {
-      this.#resizes.observe(canvas, { box: 'device-pixel-content-box' });
-    } catch {
-      this.#resizes.observe(canvas); // a browser that does not know device pixels
-    }
-  }
-
-  /** @param {ResizeObserverEntry} entry */
-  #resized({ contentRect: { width, height } }) {
-    const ratio = Math.min(devicePixelRatio, FINEST);
-    this.#size = { width: Math.round(width * ratio), height: Math.round(height * ratio), ratio };
-    this.#picture?.resize(this.#size, this.controls);
-  }
+  /** What the keys act on that do not move. @type {Hands} */
+  #hands = { choose: (view) => this.#choose(view), pause: () => this.#pause() };
 
   /**
    * @template {keyof PointWeaveEventMap} Type

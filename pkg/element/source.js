@@ -86,7 +86,7 @@ export class Scan {
  * @returns {Promise<Glb | Scan>}
  */
 export async function openSource(src, view, { signal, onProgress, engine: options }) {
-  const likely = /\.glb$/i.test(nameOf(src)) ? 'glb' : view === 'points' ? 'points' : 'computed';
+  const likely = isNamedGlb(src) ? 'glb' : view === 'points' ? 'points' : 'computed';
   onProgress('fetch', 0);
   const bytes = await fetchBytes(src, { signal, onProgress: (fraction) => onProgress('fetch', FETCHED[likely] * fraction) });
   if (isGlb(bytes)) {
@@ -104,6 +104,11 @@ export async function openSource(src, view, { signal, onProgress, engine: option
     onProgress: ({ overall }) => onProgress('read', FETCHED[kind] + (READ[kind] - FETCHED[kind]) * overall),
   });
   return new Scan(cloud, READ[kind]);
+}
+
+/** What is named so is likely to be one. @param {string} src */
+export function isNamedGlb(src) {
+  return /\.glb$/i.test(nameOf(src));
 }
 
 /** The four bytes that every GLB begins with. @param {Uint8Array} bytes */

@@ -11,9 +11,7 @@ import { PointweaveError } from './errors.js';
  * @returns {PointCloud}
  */
 export function cloudArgument(cloud, transfer) {
-  const { positions, colors, normals, attributes = {}, origin } = fields(cloud, 'cloud');
-  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
-  return own({ positions, ...optionalArrays({ colors, normals, attributes, origin }) }, transfer);
+  return own(cloudFields(fields(cloud, 'cloud')), transfer);
 }
 
 /**
@@ -22,10 +20,10 @@ export function cloudArgument(cloud, transfer) {
  * @param {boolean} [transfer]
  */
 export function resultArgument(result, transfer) {
-  const { positions, colors, normals, attributes = {}, origin, indices } = fields(result, 'result');
-  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
+  const given = fields(result, 'result');
+  const { indices } = given;
   if (indices !== undefined) expectArray('indices', indices, Uint32Array);
-  return own({ positions, indices, ...optionalArrays({ colors, normals, attributes, origin }) }, transfer);
+  return own({ indices, ...cloudFields(given) }, transfer);
 }
 
 /**
@@ -38,15 +36,31 @@ function fields(object, name) {
   return object;
 }
 
-/** @param {Record<string, any>} arrays */
-function optionalArrays({ colors, normals, attributes, origin }) {
+/** @param {Record<string, any>} cloud @returns {PointCloud} */
+function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove }) {
+  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
   if (colors !== undefined) expectArray('colors', colors, Uint8Array);
   if (normals !== undefined) expectArray('normals', normals, Float32Array);
   for (const [name, values] of Object.entries(attributes)) expectArray(`attributes.${name}`, values, Float32Array);
-  if (origin !== undefined && !(Array.isArray(origin) && origin.length === 3 && origin.every(Number.isFinite))) {
-    throw badInput('origin', 'three finite numbers', origin);
-  }
-  return { colors, normals, attributes: { ...attributes }, origin: origin && [...origin] };
+  for (const [name, triple] of Object.entries({ origin, up })) if (triple !== undefined) expectTriple(name, triple);
+  if (viewpoints !== undefined) expectViewpoints(viewpoints);
+  if (seenFromAbove !== undefined && typeof seenFromAbove !== 'boolean') throw badInput('seenFromAbove', 'true or false', seenFromAbove);
+  return {
+    positions, colors, normals, attributes: { ...attributes }, origin: origin && [...origin], up: up && [...up], seenFromAbove,
+    viewpoints: viewpoints && { positions: viewpoints.positions, of: viewpoints.of },
+  };
+}
+
+/** @param {string} name @param {unknown} value */
+function expectTriple(name, value) {
+  if (!(Array.isArray(value) && value.length === 3 && value.every(Number.isFinite))) throw badInput(name, 'three finite numbers', value);
+}
+
+/** @param {unknown} viewpoints */
+function expectViewpoints(viewpoints) {
+  const { positions, of } = fields(viewpoints, 'viewpoints');
+  expectArray('viewpoints.positions', positions, Float64Array);
+  if (of !== undefined) expectArray('viewpoints.of', of, Uint32Array);
 }
 
 /**

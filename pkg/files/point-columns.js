@@ -25,6 +25,14 @@ import { PointweaveError } from '../engine/errors.js';
  * @property {number} colorScale from colours that are no bytes to 0-255
  * @property {boolean} hasColors
  * @property {boolean} hasNormals
+ * @property {Stations} [stations] where the points were seen from
+ * @property {[number, number, number]} [up]
+ * @property {boolean} seenFromAbove
+ */
+
+/**
+ * A scanner's positions; of each run of points the first, and the index of the position that saw it.
+ * @typedef {{ positions: Float64Array, starts: Float64Array, of: Uint32Array }} Stations
  */
 
 export class Columns {
@@ -53,7 +61,7 @@ export class Columns {
    * @param {Summary} summary
    * @returns {FileCloud}
    */
-  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals }) {
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, stations, up, seenFromAbove }) {
     const positions = this.#take('positions') ?? new Float32Array(0);
     const normals = this.#take('normals');
     const colors = hasColors ? this.#take('colors') : undefined;
@@ -63,6 +71,9 @@ export class Columns {
       ...(normals && hasNormals && { normals }),
       ...(colors && { colors: colors instanceof Uint8Array ? colors : toBytes(/** @type {Float32Array} */ (colors), colorScale) }),
       ...(attributes.length > 0 && { attributes: Object.fromEntries(attributes) }),
+      ...(stations && { viewpoints: viewpointsOf(stations, positions.length / 3) }),
+      ...(up && { up }),
+      ...(seenFromAbove && { seenFromAbove }),
       file: { format, dropped, replaced, faces },
     });
   }
@@ -82,7 +93,7 @@ export class Columns {
   }
 }
 
-/** @typedef {Uint8Array | Float32Array | Float64Array} Values */
+/** @typedef {Uint8Array | Uint32Array | Float32Array | Float64Array} Values */
 
 /** An array that grows. */
 class Column {
@@ -133,6 +144,14 @@ function convert(type, from) {
     const length = typeof from === 'number' ? from : from.length;
     throw new PointweaveError({ code: 'out-of-memory', message: `there is no memory for ${length} values of the file's points`, found: String(error) });
   }
+}
+
+/** As `src/formats/stations.rs` does it. @param {Stations} stations @param {number} points */
+function viewpointsOf({ positions, starts, of: stations }, points) {
+  if (stations.every((station) => station === 0)) return { positions };
+  const of = convert(Uint32Array, points);
+  stations.forEach((station, i) => of.fill(station, starts[i], starts[i + 1]));
+  return { positions, of };
 }
 
 /** As `src/formats/table.rs` does it, in single precision. @param {Float32Array} colors @param {number} scale */

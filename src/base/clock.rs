@@ -2,8 +2,37 @@
 
 use crate::base::error::Result;
 use crate::base::progress::{Progress, Stage};
-use crate::report::StageTimes;
+use serde::{Serialize, Serializer, ser::SerializeMap};
 use web_time::Instant;
+
+/// Milliseconds by stage, in the order in which the stages ran.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StageTimes(Vec<(Stage, f64)>);
+
+impl StageTimes {
+    /// Adds `ms` to a stage's time.
+    pub fn add(&mut self, stage: Stage, ms: f64) {
+        match self.0.iter_mut().find(|(s, _)| *s == stage) {
+            Some((_, total)) => *total += ms,
+            None => self.0.push((stage, ms)),
+        }
+    }
+
+    /// Stages and their milliseconds.
+    pub fn iter(&self) -> impl Iterator<Item = (Stage, f64)> {
+        self.0.iter().copied()
+    }
+}
+
+impl Serialize for StageTimes {
+    fn serialize<S: Serializer>(&self, s: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut map = s.serialize_map(Some(self.0.len()))?;
+        for (stage, ms) in &self.0 {
+            map.serialize_entry(stage.name(), ms)?;
+        }
+        map.end()
+    }
+}
 
 /// Passes progress on and notes how long each stage took.
 pub(crate) struct Clock<'a> {

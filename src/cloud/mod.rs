@@ -1,5 +1,6 @@
 //! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
 
+pub(crate) mod copies;
 pub mod neighborhood;
 pub mod octree;
 mod viewpoints;
@@ -201,19 +202,19 @@ impl Cloud {
         Ok(self)
     }
 
-    /// Adds normals, `x y z` a point; made unit length here, zero stays zero.
+    /// Adds normals, `x y z` a point; made unit length here. One that is zero or not finite is none and becomes zero; without any
+    /// other the cloud has none.
     ///
     /// # Errors
-    /// [`Error::BadLength`], [`Error::NonFinite`].
+    /// [`Error::BadLength`].
     pub fn with_normals(mut self, normals: &[f32]) -> Result<Cloud> {
         self.check_length("normals", normals.len(), 3)?;
-        check_finite("normals", normals, 3)?;
-        self.normals = Some(
-            normals
-                .chunks_exact(3)
-                .map(|n| Vec3::new(n[0], n[1], n[2]).normalize_or_zero())
-                .collect(),
-        );
+        let normals: Vec<Vec3> = normals
+            .chunks_exact(3)
+            .map(|n| Vec3::new(n[0], n[1], n[2]).normalize_or_zero())
+            .collect();
+        let has_any = normals.iter().any(|n| *n != Vec3::ZERO);
+        self.normals = has_any.then_some(normals);
         Ok(self)
     }
 

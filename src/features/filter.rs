@@ -4,8 +4,8 @@
 use crate::base::lanes::{LANES, Lanes};
 use crate::cloud::neighborhood::{Block, Neighborhood, bounds};
 use crate::cloud::octree::Octree;
-use crate::features::Features;
 use crate::features::noise::Scales;
+use crate::features::values::Features;
 use glam::Vec3;
 use std::ops::Range;
 

@@ -14,38 +14,22 @@ pub(crate) mod noise;
 pub mod outliers;
 pub(crate) mod planes;
 pub(crate) mod steps;
+pub(crate) mod values;
 
 use crate::base::error::Result;
 use crate::base::lanes::LANES;
 use crate::base::par;
 use crate::base::progress::{Part, Progress, Stage};
+use crate::cloud::copies::{copied, copies};
 use crate::cloud::neighborhood::CELL;
 use crate::cloud::octree::Octree;
 use crate::features::filter::{Filter, Sums};
-use crate::features::noise::{Scales, quantile};
+use crate::features::noise::Scales;
 use crate::features::planes::{Plane, Planes};
 use glam::Vec3;
 use std::ops::Range;
 
-/// Per-point features in the octree's (Morton) order; lengths in the unit frame.
-#[derive(Debug, Clone)]
-pub struct Features {
-    /// Wanted distance of neighbours on the surface, √(area a point), from how many neighbours a disc holds.
-    pub spacing: Vec<f32>,
-    /// Unit normal of arbitrary sign, filtered; zero where there is none.
-    pub normals: Vec<Vec3>,
-    /// √(κ1² + κ2²) of the principal curvatures, from how the normals turn, 1/length; 1/support at most.
-    pub curvature: Vec<f32>,
-    /// Surface variation λ0/(λ0+λ1+λ2) of the neighbours, 0 (flat) to 1/3 (Pauly, Gross, Kobbelt, "Efficient
-    /// simplification of point-sampled surfaces", 2002).
-    pub variation: Vec<f32>,
-    /// Signed distance of the point to the surface, along its normal, 0 without noise: `point - residual * normal` is denoised.
-    pub residual: Vec<f32>,
-    /// Estimated standard deviation of the noise across the surface.
-    pub noise: f32,
-    /// The part of it that is known from steps of the coordinates ([`crate::features::steps`]); else 0.
-    pub steps: f32,
-}
+pub use crate::features::values::Features;
 
 impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
@@ -131,33 +115,6 @@ impl Features {
             |i, filter| filter.cell(tree, self, cells[i].clone(), &of),
         )
     }
-
-    /// Point `i` of the tree, moved onto the surface.
-    pub fn denoised(&self, tree: &Octree, i: usize) -> Vec3 {
-        tree.points[i] - self.residual[i] * self.normals[i]
-    }
-
-    /// Median of the spacing.
-    pub fn median_spacing(&self) -> f32 {
-        quantile(self.spacing.clone(), 2)
-    }
-}
-
-/// Whether [`copies`] finds any.
-pub(crate) fn copied(points: &[Vec3]) -> bool {
-    points.windows(2).any(|pair| pair[0] == pair[1])
-}
-
-/// Runs of equal points. In Morton order copies follow each other, unless another point shares their cell of 2⁻²¹.
-pub(crate) fn copies(points: &[Vec3]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::with_capacity(points.len());
-    for (i, p) in points.iter().enumerate() {
-        match runs.last_mut() {
-            Some(run) if points[run.start] == *p => run.end = i + 1,
-            _ => runs.push(i..i + 1),
-        }
-    }
-    runs
 }
 
 #[cfg(test)]

@@ -148,6 +148,7 @@ fn read_scan(
         let mut points = file.pointcloud_simple(scan)?;
         points.intensity_to_color(false);
         points.normalize_intensity(false);
+        table.seen_from(station(scan));
         let turn = Turn::of(scan.transform.as_ref());
         // Normals are none of what the crate knows, so they are read beside the points.
         let mut second = E57Reader::new(Cursor::new(bytes))?;
@@ -190,6 +191,21 @@ fn read_scan(
 /// it does when it is asked again.
 fn is_packet_without_points(error: &::e57::Error) -> bool {
     matches!(error, ::e57::Error::Internal { desc, .. } if desc == "Cannot read next point because of logic error")
+}
+
+/// Where a scan was made from: the place of its pose. The identity is what files have that know no pose, and a rotation that is
+/// none says that the pose means nothing; but spherical coordinates are those of a scanner.
+fn station(scan: &PointCloud) -> Option<[f64; 3]> {
+    let Transform {
+        rotation,
+        translation,
+    } = scan.transform.clone().unwrap_or_default();
+    let ::e57::Quaternion { w, x, y, z } = rotation;
+    let is_rotation = ((w * w + x * x + y * y + z * z) - 1.0).abs() < 1e-3;
+    let position = [translation.x, translation.y, translation.z];
+    let is_identity = position == [0.0; 3] && [x, y, z] == [0.0; 3];
+    let is_known = !is_identity || !scan.has_cartesian();
+    (is_rotation && is_known).then_some(position)
 }
 
 /// The rotation of a pose.

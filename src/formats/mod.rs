@@ -31,6 +31,7 @@ mod pcd;
 #[cfg(feature = "files")]
 mod ply;
 mod reading;
+mod stations;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -40,10 +41,11 @@ mod write;
 mod xyz;
 
 use crate::base::error::{Error, Result};
-use crate::cloud::{Attribute, Cloud};
+use crate::cloud::{Attribute, Cloud, Viewpoints};
 use crate::pipeline::Surface;
 pub use detect::detect;
 pub use reading::{Reading, Summary};
+pub use stations::{Run, Stations};
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
 
@@ -121,6 +123,11 @@ impl Format {
         }
     }
 
+    /// Whether its clouds are airborne scans: z is up, and all was seen from above.
+    pub fn is_airborne(self) -> bool {
+        self == Format::Las
+    }
+
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).
     pub fn from_name(name: &str) -> Option<Format> {
         let extension = name.rsplit('.').next().unwrap_or(name).to_lowercase();
@@ -174,6 +181,12 @@ pub struct RawCloud {
     pub attributes: Vec<Attribute>,
     /// Added to positions to give world coordinates.
     pub origin: Option<[f64; 3]>,
+    /// Where the points were seen from.
+    pub viewpoints: Option<Viewpoints>,
+    /// Which way is up.
+    pub up: Option<[f64; 3]>,
+    /// Whether all was seen from above, as airborne scans are.
+    pub seen_from_above: bool,
     /// Rows left out because a coordinate was NaN or infinite.
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
@@ -191,6 +204,9 @@ impl RawCloud {
             normals: None,
             attributes: Vec::new(),
             origin: None,
+            viewpoints: None,
+            up: None,
+            seen_from_above: false,
             dropped: 0,
             replaced: 0,
             faces: 0,
@@ -207,6 +223,9 @@ impl RawCloud {
                 .map(|n| n.iter().flat_map(|n| n.to_array()).collect()),
             attributes: cloud.attributes.clone(),
             origin: cloud.origin,
+            viewpoints: cloud.viewpoints.clone(),
+            up: cloud.up.map(|up| up.as_dvec3().to_array()),
+            seen_from_above: cloud.seen_from_above,
             ..RawCloud::new(Positions::F64(cloud.positions_f64()))
         }
     }
@@ -237,7 +256,7 @@ impl RawCloud {
     /// The cloud that the pipeline works on.
     ///
     /// # Errors
-    /// [`Error::EmptyCloud`]; [`Error::BadLength`] and [`Error::NonFinite`] for arrays that no reader made.
+    /// [`Error::EmptyCloud`]; [`Error::BadLength`], [`Error::NonFinite`] and [`Error::BadOption`] for what no reader made.
     pub fn to_cloud(&self) -> Result<Cloud> {
         let mut cloud = match &self.positions {
             Positions::F32(values) => Cloud::from_f32(values)?,
@@ -252,8 +271,15 @@ impl RawCloud {
         for attribute in &self.attributes {
             cloud = cloud.with_attribute(&attribute.name, &attribute.values)?;
         }
+        if let Some(Viewpoints { positions, of }) = &self.viewpoints {
+            let positions: Vec<f64> = positions.iter().flat_map(|p| p.to_array()).collect();
+            cloud = cloud.with_viewpoints(&positions, of.as_deref())?;
+        }
+        if let Some(up) = self.up {
+            cloud = cloud.with_up(up)?;
+        }
         cloud.origin = self.origin;
-        Ok(cloud)
+        Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 
     /// Checks that every array has one entry a point.

@@ -3,10 +3,13 @@
 //!
 //! Fields may have several values (`COUNT`); those that do, and the padding `_`, are passed over. Colours are packed into
 //! one value, `rgb` or `rgba`: the lowest byte is blue. Points with a coordinate that is NaN, which organised clouds have
-//! where nothing was seen, are left out and counted. The viewpoint is not applied: coordinates are the file's.
+//! where nothing was seen, are left out and counted. The viewpoint is not applied: coordinates are the file's. It is where they were
+//! seen from, unless it is the default, 0 0 0; then an organised cloud is asked whether it is a picture taken from there.
 //!
 //! Why not a crate: `pcd-rs` reads through memory maps or whole records with one allocation each, and gives no place
 //! for an error; `pcd_rs` has no wasm32 build without a file system.
+
+mod picture;
 
 use super::input::Input;
 use super::lzf;
@@ -14,6 +17,7 @@ use super::reading::{Parser, Step};
 use super::table::{ColorRange, Columns, Precision, Table};
 use super::text::number;
 use crate::base::error::Result;
+use picture::Picture;
 
 /// Whether the content starts as a PCD file does: comments, then `VERSION` or `FIELDS`.
 pub(super) fn looks_like(head: &[u8]) -> bool {
@@ -87,6 +91,7 @@ struct Header {
     width: Option<u64>,
     height: Option<u64>,
     points: Option<u64>,
+    viewpoint: Option<[f64; 3]>,
 }
 
 impl Header {
@@ -110,7 +115,8 @@ impl Header {
                 value.ok_or_else(|| input.bad_line("a count", line))
             };
             match key {
-                "" | "VERSION" | "VIEWPOINT" => {}
+                "" | "VERSION" => {}
+                "VIEWPOINT" => self.viewpoint = viewpoint(&values),
                 _ if key.starts_with('#') => {}
                 "FIELDS" | "COLUMNS" => {
                     self.fields = values.iter().map(|name| name.to_string()).collect()
@@ -210,8 +216,21 @@ impl Header {
             color,
             row: 0,
             values: Vec::new(),
+            viewpoint: self.viewpoint,
+            picture: match self.height {
+                Some(2..) if self.viewpoint.is_none() => self.width.map(Picture::new),
+                _ => None,
+            },
         })
     }
+}
+
+/// The place in `tx ty tz qw qx qy qz`, unless it is the default.
+fn viewpoint(values: &[&str]) -> Option<[f64; 3]> {
+    let place = |i: usize| values.get(i)?.parse::<f64>().ok();
+    let position = [place(0)?, place(1)?, place(2)?];
+    let is_said = position != [0.0; 3] && position.iter().all(|x| x.is_finite());
+    is_said.then_some(position)
 }
 
 /// The columns of the rows that [`Body::push`] makes: a value for each field, then red, green, blue where one packs them.
@@ -264,6 +283,9 @@ struct Body {
     color: Option<usize>,
     row: u64,
     values: Vec<f64>,
+    viewpoint: Option<[f64; 3]>,
+    /// Of an organised cloud that says no viewpoint.
+    picture: Option<Picture>,
 }
 
 impl Body {
@@ -285,11 +307,17 @@ impl Body {
     }
 
     fn read(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
-        match self.encoding {
+        let step = match self.encoding {
             Encoding::Ascii => self.read_text(input, table),
             Encoding::Binary => self.read_rows(input, table),
             Encoding::Compressed => self.read_columns(input, table),
+        }?;
+        let is_picture = self.picture.as_ref().is_some_and(Picture::is_of_the_origin);
+        let origin = is_picture.then_some([0.0; 3]);
+        if let (Step::Done, Some(viewpoint)) = (step, self.viewpoint.or(origin)) {
+            table.stations.begin(0, Some(viewpoint));
         }
+        Ok(step)
     }
 
     fn read_text(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
@@ -438,6 +466,9 @@ impl Body {
         if let Some(packed) = packed {
             let [blue, green, red, _] = packed.to_le_bytes();
             self.values.extend([red, green, blue].map(f64::from));
+        }
+        if let Some(picture) = &mut self.picture {
+            picture.push(self.columns.position.map(|column| self.values[column]));
         }
         table.push(&self.values);
         self.row += 1;

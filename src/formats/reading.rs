@@ -2,7 +2,7 @@
 
 use super::input::{Input, Place};
 use super::table::{Block, Table, Verdict};
-use super::{Format, Positions, RawCloud, detect};
+use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
 use super::{glb, obj, off, pcd, ply, stl, xyz};
 use crate::base::error::Result;
@@ -46,7 +46,7 @@ pub struct Reading {
 }
 
 /// What is known at the end of a file.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// The format that was read.
     pub format: Format,
@@ -60,6 +60,12 @@ pub struct Summary {
     pub replaced: usize,
     /// As in [`RawCloud`].
     pub faces: u64,
+    /// Where the points were seen from.
+    pub stations: Stations,
+    /// As in [`RawCloud`].
+    pub up: Option<[f64; 3]>,
+    /// As in [`RawCloud`].
+    pub seen_from_above: bool,
 }
 
 impl Reading {
@@ -120,13 +126,17 @@ impl Reading {
             has_normals: false,
         };
         let table = self.table.as_ref();
+        let format = self.format.unwrap_or(Format::Xyz);
         Summary {
-            format: self.format.unwrap_or(Format::Xyz),
+            format,
             points: table.map_or(0, |table| table.rows),
             verdict: table.map_or(none, Table::verdict),
             dropped: table.map_or(0, |table| table.dropped),
             replaced: table.map_or(0, Table::replaced),
             faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
+            stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
+            up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
+            seen_from_above: format.is_airborne(),
         }
     }
 
@@ -136,10 +146,17 @@ impl Reading {
         while !self.done {
             taken += self.parse(&bytes[taken..], true)?;
         }
-        let faces = self.summary().faces;
+        let Summary {
+            faces,
+            up,
+            seen_from_above,
+            ..
+        } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
         let mut cloud = self.table.map_or_else(empty, Table::finish);
         cloud.faces = faces;
+        cloud.up = up;
+        cloud.seen_from_above = seen_from_above;
         Ok(cloud)
     }
 

@@ -1,6 +1,6 @@
 //! Rows of named numbers become the arrays of a [`RawCloud`], all at once or block by block.
 
-use super::{Positions, RawCloud};
+use super::{Positions, RawCloud, Stations};
 use crate::cloud::Attribute;
 
 /// Which columns of a row hold what.
@@ -140,6 +140,7 @@ pub(super) struct Table {
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
+    pub(super) stations: Stations,
     pub(super) dropped: usize,
     replaced: usize,
 }
@@ -158,6 +159,7 @@ impl Table {
             brightest: 0.0,
             colors_said: true,
             normals_said: true,
+            stations: Stations::default(),
             dropped: 0,
             replaced: 0,
         }
@@ -214,6 +216,11 @@ impl Table {
     /// Adds a normal that the file has apart from the rows; the columns name none.
     pub(super) fn push_normal(&mut self, normal: [f32; 3]) {
         self.block.normals.get_or_insert_default().extend(normal);
+    }
+
+    /// The rows from here on were seen from `position`; `None` where the file does not tell.
+    pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
+        self.stations.begin(self.rows, position);
     }
 
     /// The rows since the last block.
@@ -274,6 +281,7 @@ impl Table {
                     .collect(),
             });
         cloud.attributes = attributes;
+        cloud.viewpoints = self.stations.viewpoints(cloud.points());
         cloud.dropped = self.dropped;
         cloud.replaced = self.replaced;
         cloud

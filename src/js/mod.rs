@@ -1,6 +1,8 @@
 //! What every border to JavaScript needs: panics kept, errors thrown, objects made.
 
 #[cfg(feature = "engine")]
+mod viewpoints;
+#[cfg(feature = "engine")]
 pub mod wasm;
 #[cfg(not(feature = "engine"))]
 pub mod wasm_read;

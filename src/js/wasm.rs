@@ -9,6 +9,7 @@ use crate::base::params::{ReduceParams, SurfaceParams};
 use crate::base::progress::{Progress, Stage};
 use crate::cloud::{Attribute, Cloud};
 use crate::formats::{self, Output, Positions, RawCloud, WriteOptions};
+use crate::js::viewpoints::{PointViews, views_to_js};
 use crate::js::{JsResult, object, optional};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::report::ReduceReport;
@@ -83,7 +84,7 @@ pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> 
 /// [`pipeline::inspect`].
 #[wasm_bindgen]
 pub fn inspect(cloud: &PointCloud, progress: Function) -> JsResult {
-    let positions = match cloud.read().positions {
+    let positions = match cloud.read()?.positions {
         Positions::F32(values) => values.into_iter().map(f64::from).collect(),
         Positions::F64(values) => values,
     };
@@ -115,7 +116,7 @@ pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValu
         quantize,
     };
     let indices = result.indices().map(|indices| indices.to_vec());
-    let bytes = formats::write(&result.read(), indices.as_deref(), format, options)?;
+    let bytes = formats::write(&result.read()?, indices.as_deref(), format, options)?;
     Ok(Uint8Array::from(&bytes[..]))
 }
 
@@ -163,34 +164,43 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     fn origin(this: &PointCloud) -> Option<Array>;
     #[wasm_bindgen(method, getter)]
+    fn viewpoints(this: &PointCloud) -> Option<PointViews>;
+    #[wasm_bindgen(method, getter)]
+    fn up(this: &PointCloud) -> Option<Array>;
+    #[wasm_bindgen(method, getter, js_name = seenFromAbove)]
+    fn seen_from_above(this: &PointCloud) -> Option<bool>;
+    #[wasm_bindgen(method, getter)]
     fn indices(this: &PointCloud) -> Option<Uint32Array>;
 }
 
 impl PointCloud {
-    fn read(&self) -> RawCloud {
+    fn read(&self) -> Result<RawCloud, Error> {
         let positions = self.positions();
         let positions = match positions.dyn_ref::<Float64Array>() {
             Some(values) => Positions::F64(values.to_vec()),
             None => Positions::F32(positions.unchecked_into::<Float32Array>().to_vec()),
         };
         let attributes = self.attributes().unwrap_or_default();
-        RawCloud {
+        let points = positions.len() / 3;
+        let viewpoints = self.viewpoints().map(|views| views.read(points));
+        Ok(RawCloud {
             colors: self.colors().map(|values| values.to_vec()),
             normals: self.normals().map(|values| values.to_vec()),
             attributes: Object::entries(&attributes)
                 .iter()
                 .map(|entry| attribute(&entry.unchecked_into()))
                 .collect(),
-            origin: self
-                .origin()
-                .map(|o| [0, 1, 2].map(|axis| o.get(axis).as_f64().unwrap_or(0.0))),
+            origin: self.origin().map(triple),
+            viewpoints: viewpoints.transpose()?,
+            up: self.up().map(triple),
+            seen_from_above: self.seen_from_above().unwrap_or_default(),
             ..RawCloud::new(positions)
-        }
+        })
     }
 
     /// The cloud, and what its positions were in; no second copy of them stays.
     fn to_cloud(&self) -> Result<(Cloud, Precision), Error> {
-        let raw = self.read();
+        let raw = self.read()?;
         let precision = match raw.positions {
             Positions::F32(_) => Precision::Single,
             Positions::F64(_) => Precision::Double,
@@ -204,6 +214,11 @@ impl PointCloud {
 enum Precision {
     Single,
     Double,
+}
+
+/// Three numbers.
+fn triple(values: Array) -> [f64; 3] {
+    [0, 1, 2].map(|axis| values.get(axis).as_f64().unwrap_or(0.0))
 }
 
 /// An entry `[name, values]`.
@@ -242,9 +257,14 @@ fn reduced_to_js(result: &ReducedCloud, precision: Precision) -> JsResult {
                 positions_to_js(cells.as_flattened(), cloud, precision)
             }),
         ),
+        ("viewpoints", views_to_js(&cloud.viewpoints)?),
+        (
+            "seenFromAbove",
+            optional(&cloud.seen_from_above.then_some(true), |yes| *yes),
+        ),
         ("report", to_js(&result.report)?),
     ])?;
-    attach(fields, &cloud.attributes, cloud.origin)
+    attach(fields, &cloud.attributes, cloud)
 }
 
 /// A `SurfaceMesh` with positions of the input's type.
@@ -266,7 +286,7 @@ fn surface_to_js(surface: &Surface, precision: Precision) -> JsResult {
         ("distances", distances_to_js(&surface.distances)?),
         ("report", to_js(&surface.report)?),
     ])?;
-    attach(fields, &surface.attributes, cloud.origin)
+    attach(fields, &surface.attributes, cloud)
 }
 
 fn distances_to_js(distances: &Option<Distances>) -> JsResult {
@@ -299,20 +319,23 @@ fn colors_to_js(colors: &Option<Vec<[u8; 3]>>) -> JsValue {
     optional(colors, |colors| Uint8Array::from(colors.as_flattened()))
 }
 
-/// Adds `attributes` and `origin`, where there are any.
-fn attach(cloud: JsValue, attributes: &[Attribute], origin: Option<[f64; 3]>) -> JsResult {
+/// Adds `attributes`, and the cloud's `origin` and `up`, where there are any.
+fn attach(result: JsValue, attributes: &[Attribute], cloud: &Cloud) -> JsResult {
     if !attributes.is_empty() {
         let table = Object::new();
         for Attribute { name, values } in attributes {
             Reflect::set(&table, &name.into(), &Float32Array::from(&values[..]))?;
         }
-        Reflect::set(&cloud, &"attributes".into(), &table)?;
+        Reflect::set(&result, &"attributes".into(), &table)?;
     }
-    if let Some(origin) = origin {
-        let origin: Array = origin.into_iter().map(JsValue::from).collect();
-        Reflect::set(&cloud, &"origin".into(), &origin)?;
+    let up = cloud.up.map(|up| up.as_dvec3().to_array());
+    for (name, triple) in [("origin", cloud.origin), ("up", up)] {
+        if let Some(triple) = triple {
+            let triple: Array = triple.into_iter().map(JsValue::from).collect();
+            Reflect::set(&result, &name.into(), &triple)?;
+        }
     }
-    Ok(cloud)
+    Ok(result)
 }
 
 /// Says what only this file knows. Wasm memory never shrinks, so its size is its peak.

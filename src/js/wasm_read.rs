@@ -3,9 +3,9 @@
 //! did; `pkg/files/reading.js` puts them together. The builds of readers have this and nothing else.
 
 use crate::base::error::Error;
-use crate::formats::{Block, ColorValues, Format, Positions, Reading, Summary};
+use crate::formats::{Block, ColorValues, Format, Positions, Reading, Stations, Summary};
 use crate::js::{JsResult, object, optional};
-use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array};
+use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 
@@ -130,5 +130,29 @@ fn summary(summary: &Summary) -> JsResult {
         ("colorScale", verdict.color_scale.into()),
         ("hasColors", verdict.has_colors.into()),
         ("hasNormals", verdict.has_normals.into()),
+        ("stations", stations(&summary.stations)?),
+        (
+            "up",
+            optional(&summary.up, |up| {
+                up.map(JsValue::from).iter().collect::<Array>()
+            }),
+        ),
+        ("seenFromAbove", summary.seen_from_above.into()),
+    ])
+}
+
+/// `{ positions, starts, of }`: the positions, and for each run of points the first of them and the index of its position.
+fn stations(stations: &Stations) -> JsResult {
+    if !stations.is_known() {
+        return Ok(JsValue::UNDEFINED);
+    }
+    let Stations { positions, runs } = stations;
+    let positions: Vec<f64> = positions.iter().flat_map(|p| p.to_array()).collect();
+    let starts: Vec<f64> = runs.iter().map(|run| run.start as f64).collect();
+    let of: Vec<u32> = runs.iter().map(|run| run.station).collect();
+    object([
+        ("positions", Float64Array::from(&positions[..]).into()),
+        ("starts", Float64Array::from(&starts[..]).into()),
+        ("of", Uint32Array::from(&of[..]).into()),
     ])
 }

@@ -5,7 +5,10 @@
 //! (H. Edelsbrunner, R. Seidel, "Voronoi diagrams and arrangements", 1986). With so few points all planes through three
 //! of them are tried, so that points in one plane or on one circle need no special case.
 
-use crate::mesh::{Mesh, fill_normals};
+use crate::base::params::Boundary;
+use crate::fit::cells::Sites;
+use crate::mesh::{Extracted, Mesh, fill_normals};
+use crate::orient::Signs;
 use crate::report::topology;
 use glam::{DVec2, DVec3, Vec3};
 
@@ -25,6 +28,9 @@ const SHALLOW: (f64, f64) = (0.25, 0.5);
 /// Sides of a sheet's rim are at most this many times as long as the distance between nearest neighbours: the diagonal of a
 /// square, and some more.
 const GAP: f64 = 1.6;
+
+/// Share of the signs, less those for it, that turn a hull.
+const AGREED: f64 = 0.8;
 
 /// A mesh of few points.
 pub(crate) struct Few {
@@ -75,8 +81,33 @@ pub(crate) fn mesh(points: &[Vec3]) -> Option<Few> {
     Some(Few { mesh, closed })
 }
 
+impl Few {
+    /// The mesh as the signs have it, and the signs' normals as the mesh has them, if they are free to be `turned`. A hull has an
+    /// outer side of its own: only signs that agree with each other turn it, as those of given normals do.
+    pub(crate) fn placed(
+        self,
+        (sites, signs): (&Sites, &mut Signs),
+        (turned, boundary): (bool, Boundary),
+    ) -> Extracted {
+        let Few { mut mesh, closed } = self;
+        let points = sites.tree.points.iter();
+        let own: Vec<Vec3> = points.map(|&p| normal(&mesh, p)).collect();
+        let agree = |(a, b): (&Vec3, &Vec3)| f64::from(a.dot(*b)).signum();
+        let agreement = own.iter().zip(&signs.normals).map(agree).sum::<f64>() / own.len() as f64;
+        let inverted = agreement < if closed { -AGREED } else { 0.0 };
+        if inverted {
+            mesh.invert();
+        }
+        if turned {
+            let own = own.into_iter().map(|n| if inverted { -n } else { n });
+            signs.normals = own.collect();
+        }
+        Extracted::of(mesh, boundary)
+    }
+}
+
 /// Which way a mesh looks at a point: the normal of the nearest vertex.
-pub(crate) fn normal(mesh: &Mesh, point: Vec3) -> Vec3 {
+fn normal(mesh: &Mesh, point: Vec3) -> Vec3 {
     let away = |&v: &usize| mesh.vertices[v].distance_squared(point);
     let nearest =
         (0..mesh.vertices.len()).min_by(|a, b| away(a).total_cmp(&away(b)).then(a.cmp(b)));

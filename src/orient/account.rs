@@ -82,7 +82,8 @@ pub(crate) fn of(domains: &Domains, solved: &Solved) -> Account {
     let total: f32 = areas.iter().sum::<f32>().max(f32::MIN_POSITIVE);
     let share = |which: &dyn Fn(usize) -> bool| {
         let of = (0..areas.len()).filter(|&s| which(s)).map(|s| areas[s]);
-        f64::from(of.sum::<f32>() / total)
+        // The sum of nothing would be −0.
+        f64::from(of.fold(0.0, |sum, area| sum + area) / total)
     };
     let mut sources = Vec::new();
     for source in Source::ALL {

@@ -1,7 +1,7 @@
 //! What the pipeline starts from: the caller's points, or those that are not isolated, with all that is measured of them.
 
-use crate::base::error::Result;
-use crate::base::params::Outliers;
+use crate::base::error::{Error, Result};
+use crate::base::params::{COLORS, Outliers, ReduceParams};
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
@@ -36,13 +36,14 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     Ok((tree, features))
 }
 
-/// What a reduction is made of: the caller's points, or those that are not isolated.
+/// What a job starts from: the caller's points, or those that are not isolated. A job uses up an input that it owns, and
+/// copies what it changes of one that is lent.
 #[derive(Debug)]
 pub(crate) struct Input<'a> {
     /// Without points where nobody else owns them: the tree has them.
     pub(crate) cloud: Cow<'a, Cloud>,
-    pub(crate) tree: Octree,
-    pub(crate) features: Features,
+    pub(crate) tree: Cow<'a, Octree>,
+    pub(crate) features: Cow<'a, Features>,
     pub(crate) origin: Origin,
 }
 
@@ -111,14 +112,24 @@ impl<'a> Input<'a> {
         }
         Input {
             cloud,
-            tree,
-            features,
+            tree: Cow::Owned(tree),
+            features: Cow::Owned(features),
             origin,
         }
     }
 }
 
 impl Input<'_> {
+    /// The same input, for a job that may not use it up.
+    pub(crate) fn lent(&self) -> Input<'_> {
+        Input {
+            cloud: Cow::Borrowed(&self.cloud),
+            tree: Cow::Borrowed(&self.tree),
+            features: Cow::Borrowed(&self.features),
+            origin: self.origin.clone(),
+        }
+    }
+
     /// Whether this was measured of these very points, colours and whatever else there is.
     pub(crate) fn is_of(&self, cloud: &Cloud) -> bool {
         let Cloud {
@@ -169,5 +180,29 @@ impl Origin {
             }
             *assignment = all;
         }
+    }
+}
+
+/// Names of `attributes` that the cloud does not have.
+pub(crate) fn check_attributes(cloud: &Cloud, params: &ReduceParams) -> Result<()> {
+    let scalars = cloud.attributes.iter().map(|a| a.name.as_str());
+    let names: Vec<&str> = scalars
+        .chain(cloud.colors.as_ref().map(|_| COLORS))
+        .collect();
+    match params
+        .attributes
+        .keys()
+        .find(|key| !names.contains(&key.as_str()))
+    {
+        None => Ok(()),
+        Some(key) => Err(Error::BadOption {
+            option: "attributes".into(),
+            expected: if names.is_empty() {
+                "an empty object, as the cloud has no attributes".into()
+            } else {
+                format!("names of the cloud's attributes: {}", names.join(", "))
+            },
+            found: format!("an object with {key}"),
+        }),
     }
 }

@@ -105,7 +105,7 @@ pub fn reduce(
     progress: &mut dyn Progress,
 ) -> Result<Reduced> {
     params.validate()?;
-    let power = Fuzzifier::new(fuzzifier(params));
+    let power = Fuzzifier::new(params.fuzzifier(params.method));
     let given = tree.points.len();
     let all = params.target.count(given) == Some(given);
     let places = if all { None } else { Places::of(tree) };
@@ -191,14 +191,6 @@ fn corners(points: &[Vec3]) -> [Vec3; 2] {
     let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
     [low, high]
-}
-
-/// m of eq. 1-5, by default the method's.
-fn fuzzifier(params: &ReduceParams) -> f64 {
-    params.fuzzifier.unwrap_or(match params.method {
-        Method::Adaptive => 1.5,
-        Method::Paper => 2.0,
-    })
 }
 
 /// What the options ask for.
@@ -345,7 +337,7 @@ impl Job<'_> {
         members: &Members,
         plan: Plan,
     ) -> Vec<Placed> {
-        let power = Fuzzifier::new(fuzzifier(self.params));
+        let power = Fuzzifier::new(self.params.fuzzifier(self.params.method));
         let mut placed = placement::place(
             self.tree,
             &self.features,
@@ -409,9 +401,9 @@ fn adaptive(
         spacing: &spacing,
     };
     let settling = Settling {
-        fuzzifier: fuzzifier(params),
-        epsilon: params.epsilon.unwrap_or(1e-2),
-        max_iterations: params.max_iterations.unwrap_or(5),
+        fuzzifier: params.fuzzifier(params.method),
+        epsilon: params.epsilon(Method::Adaptive),
+        max_iterations: params.max_iterations(Method::Adaptive),
     };
     let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
     let clustering = Clustering {

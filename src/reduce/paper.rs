@@ -19,7 +19,7 @@ use glam::Vec3;
 use crate::base::error::Result;
 use crate::base::linalg::sym_eigen;
 use crate::base::par;
-use crate::base::params::{Clusters, ReduceParams, Target};
+use crate::base::params::{Clusters, Method, ReduceParams, Target};
 use crate::base::power::Fuzzifier;
 use crate::base::progress::{Progress, Stage};
 use crate::cloud::octree::{Neighbor, Octree};
@@ -108,7 +108,7 @@ pub fn cluster(
         .sum();
 
     let index = Octree::build(&centers);
-    let fuzzifier = Fuzzifier::new(params.fuzzifier.unwrap_or(2.0));
+    let fuzzifier = Fuzzifier::new(params.fuzzifier(Method::Paper));
     let shares = par::map(
         tree.points.len(),
         Vec::new,
@@ -209,9 +209,9 @@ fn run(
 
 fn fcm_params(params: &ReduceParams) -> FcmParams {
     FcmParams {
-        fuzzifier: params.fuzzifier.unwrap_or(2.0),
-        epsilon: params.epsilon.unwrap_or(1e-3),
-        max_iterations: params.max_iterations.unwrap_or(100),
+        fuzzifier: params.fuzzifier(Method::Paper),
+        epsilon: params.epsilon(Method::Paper),
+        max_iterations: params.max_iterations(Method::Paper),
     }
 }
 

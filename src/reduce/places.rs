@@ -1,7 +1,8 @@
 //! Copies of a point are one place: a reduction works on the places, and each stands for all of its copies.
 
+use crate::cloud::copies::{copied, copies};
 use crate::cloud::octree::Octree;
-use crate::features::{self, Features};
+use crate::features::Features;
 use std::ops::Range;
 
 /// The distinct places of a cloud that has copies.
@@ -15,10 +16,10 @@ pub(crate) struct Places {
 impl Places {
     /// `None` where no point has a copy.
     pub(crate) fn of(tree: &Octree) -> Option<Places> {
-        if !features::copied(&tree.points) {
+        if !copied(&tree.points) {
             return None;
         }
-        let copies = features::copies(&tree.points);
+        let copies = copies(&tree.points);
         let distinct: Vec<_> = copies.iter().map(|c| tree.points[c.start]).collect();
         Some(Places {
             tree: Octree::build(&distinct),

@@ -7,11 +7,11 @@ pub mod distance;
 mod knowledge;
 
 use crate::base::lists::{Lists, pack, unpack};
-use crate::base::progress::Stage;
 use crate::base::sets::Sets;
 use glam::{DVec3, Vec3};
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde::Serialize;
 
+pub use crate::base::clock::StageTimes;
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
 pub(crate) use knowledge::doubts;
@@ -43,35 +43,6 @@ impl DistanceStats {
             rms: (squares / n).sqrt(),
             max,
         }
-    }
-}
-
-/// Milliseconds by stage, in the order in which the stages ran.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct StageTimes(Vec<(Stage, f64)>);
-
-impl StageTimes {
-    /// Adds `ms` to a stage's time.
-    pub fn add(&mut self, stage: Stage, ms: f64) {
-        match self.0.iter_mut().find(|(s, _)| *s == stage) {
-            Some((_, total)) => *total += ms,
-            None => self.0.push((stage, ms)),
-        }
-    }
-
-    /// Stages and their milliseconds.
-    pub fn iter(&self) -> impl Iterator<Item = (Stage, f64)> {
-        self.0.iter().copied()
-    }
-}
-
-impl Serialize for StageTimes {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let mut map = s.serialize_map(Some(self.0.len()))?;
-        for (stage, ms) in &self.0 {
-            map.serialize_entry(stage.name(), ms)?;
-        }
-        map.end()
     }
 }
 

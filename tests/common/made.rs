@@ -68,37 +68,42 @@ pub enum Kept {
     Spherical,
 }
 
+/// A pose: a quaternion `w x y z` and a place.
+pub fn pose([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> Transform {
+    Transform {
+        rotation: Quaternion { w, x, y, z },
+        translation: Translation { x: a, y: b, z: c },
+    }
+}
+
 /// An E57 file with a scan of so many points for each entry, all with intensity, colours and normals; every fifth point
 /// of a Cartesian scan is marked as invalid. The second scan, and those after it, are turned by 90° around z and moved by
 /// (10, 20, 30).
 pub fn e57(scans: &[(Kept, usize)]) -> Vec<u8> {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let moved = pose([half, 0.0, 0.0, half], [10.0, 20.0, 30.0]);
+    let pose = |i: usize| (i > 0).then(|| moved.clone());
+    let scans: Vec<_> = scans
+        .iter()
+        .enumerate()
+        .map(|(i, &(kept, points))| (kept, points, pose(i)))
+        .collect();
+    e57_at(&scans)
+}
+
+/// The same, each scan at a pose of its own.
+pub fn e57_at(scans: &[(Kept, usize, Option<Transform>)]) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut writer = E57Writer::new(&mut file, "{0}").expect("a writer");
     let extension = e57::Extension::new("nor", "http://www.libe57.org/E57_NOR_surface_normals.txt");
     writer.register_extension(extension).expect("an extension");
-    for (scan, &(kept, points)) in scans.iter().enumerate() {
-        let prototype = prototype(kept);
+    for (scan, (kept, points, pose)) in scans.iter().enumerate() {
         let mut cloud = writer
-            .add_pointcloud(&format!("{{{scan}}}"), prototype)
+            .add_pointcloud(&format!("{{{scan}}}"), prototype(*kept))
             .expect("a scan");
-        if scan > 0 {
-            let half = std::f64::consts::FRAC_1_SQRT_2;
-            cloud.set_transform(Some(Transform {
-                rotation: Quaternion {
-                    w: half,
-                    x: 0.0,
-                    y: 0.0,
-                    z: half,
-                },
-                translation: Translation {
-                    x: 10.0,
-                    y: 20.0,
-                    z: 30.0,
-                },
-            }));
-        }
-        for i in 0..points {
-            cloud.add_point(values(kept, i)).expect("a point");
+        cloud.set_transform(pose.clone());
+        for i in 0..*points {
+            cloud.add_point(values(*kept, i)).expect("a point");
         }
         cloud.finalize().expect("a scan written");
     }

@@ -3,6 +3,7 @@
 #![allow(dead_code)] // every test file takes what it needs
 
 pub mod mesh;
+pub mod scenes;
 
 use glam::{DVec3, Vec3};
 use pointweave::base::progress::Silent;

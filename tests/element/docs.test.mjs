@@ -6,17 +6,16 @@ import { join } from 'node:path';
 import ts from 'typescript';
 import { silhouette } from '../page/pictures.mjs';
 import { ball, duckScan, glb, poster } from './files.mjs';
-import { startSite, test } from './site.mjs';
+import { blocks, painted, startSite, test } from './site.mjs';
 
-const DOCUMENT = readFileSync(new URL('../../pkg/docs/embed.md', import.meta.url), 'utf8');
-const blocks = (language) => [...DOCUMENT.matchAll(/^```(\w*)\n([\s\S]*?)^```$/gm)].filter(([, name]) => name === language).map(([, , text]) => text);
+const [DOCUMENT, VIEWER] = ['embed', 'viewer'].map((name) => readFileSync(new URL(`../../pkg/docs/${name}.md`, import.meta.url), 'utf8'));
 
 const site = await startSite();
 site.put('/docs/duck.ply', (await duckScan()).bytes);
 site.put('/docs/duck.glb', await glb([{ ...ball(12), color: [200, 160, 10] }]));
 site.put('/docs/duck.png', poster('#8020c0'), { 'Content-Type': 'image/svg+xml' });
 
-for (const [i, html] of blocks('html').entries()) {
+for (const [i, html] of blocks(DOCUMENT, 'html').entries()) {
   test(`page ${i + 1} of embed.md`, async () => {
     const shown = await site.visit(site.put(`/docs/${i}.html`, html));
     assert.ok(await shown.element().count() > 0);
@@ -31,10 +30,33 @@ for (const [i, html] of blocks('html').entries()) {
   });
 }
 
+for (const [i, html] of blocks(VIEWER, 'html').entries()) {
+  test(`page ${i + 1} of viewer.md`, async () => {
+    const shown = await site.visit(site.put(`/docs/viewer-${i}.html`, html));
+    await shown.page.waitForFunction(painted, null, { timeout: 60_000 });
+    await shown.drawn();
+    assert.ok(silhouette(await shown.page.locator('canvas').screenshot({ animations: 'disabled' }), 0).area > 5000);
+    if (html.includes('id="legend"')) assert.match(await shown.page.innerText('#legend'), /^Distance to the scan: 0/);
+    if (html.includes('<img')) assert.deepEqual(await shown.page.$eval('img', async (image) => (await image.decode(), [image.naturalWidth, image.naturalHeight])), [320, 240]);
+    assert.deepEqual(shown.faults, []);
+    await shown.keep(`docs-viewer-${i}`);
+  });
+}
+
+test('every option, member and event of a viewer is documented', () => {
+  const types = readFileSync(new URL('../../pkg/viewer.d.ts', import.meta.url), 'utf8');
+  const names = ['ViewerOptions', 'Viewer extends EventTarget', 'ViewerEventMap'].flatMap((head) => {
+    const [, body] = new RegExp(`interface ${head} \\{\\n([^]*?)\\n\\}`).exec(types);
+    return [...body.matchAll(/^  (?:readonly |get |set )?(\w+)[?(:]/gm)].map(([, name]) => name);
+  }).filter((name) => name !== 'addEventListener');
+  assert.ok(names.length > 30, names.join());
+  for (const name of names) assert.match(VIEWER, new RegExp(`\`[^\`\\n]*\\b${name}\\b[^\`\\n]*\``), `${name} is in viewer.md`);
+});
+
 test('the TypeScript of embed.md fits', async (t) => {
   const folder = mkdtempSync(join(import.meta.dirname, 'docs-')); // in here, so that its imports are found
   t.after(() => rmSync(folder, { recursive: true }));
-  const files = blocks('tsx').map((text, i) => {
+  const files = blocks(DOCUMENT, 'tsx').map((text, i) => {
     const file = join(folder, `${i}.tsx`);
     writeFileSync(file, text);
     return file;

@@ -18,7 +18,10 @@ const FLAGS = [
   '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--js-flags=--expose-gc',
 ];
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml' };
-const IMPORTS = { three: '/node_modules/three/build/three.module.js', 'three/addons/': '/node_modules/three/examples/jsm/' };
+const IMPORTS = {
+  pointweave: '/pointweave/index.js', 'pointweave/viewer': '/pointweave/viewer.js',
+  three: '/node_modules/three/build/three.module.js', 'three/addons/': '/node_modules/three/examples/jsm/',
+};
 const STRICT = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-map'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src 'self' data:";
 
 /** An isolated page takes workers only from those who say this, too. */
@@ -36,6 +39,18 @@ const PATIENCE = 60_000;
 
 /** @param {string} name @param {(t: import('node:test').TestContext) => Promise<void>} run */
 export const test = (name, run) => nodeTest(name, { timeout: 2 * PATIENCE }, run);
+
+/** The fenced blocks of a language in a document. @param {string} document @param {string} language */
+export const blocks = (document, language) =>
+  [...document.matchAll(/^```(\w*)\n([\s\S]*?)^```$/gm)].filter(([, name]) => name === language).map(([, , text]) => text);
+
+/** In a page: whether its canvas shows something. Stands alone. */
+export function painted() {
+  const { width, height } = document.querySelector('canvas');
+  const copy = new OffscreenCanvas(width, height).getContext('2d');
+  copy.drawImage(document.querySelector('canvas'), 0, 0);
+  return copy.getImageData(0, 0, width, height).data.some((value, i) => i % 4 === 3 && value > 0);
+}
 
 /** A browser and a server, for a file of tests to have at its top; both end with it. */
 export async function startSite() {

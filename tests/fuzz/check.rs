@@ -51,6 +51,8 @@ fn check_cloud(cloud: &RawCloud) {
             .iter()
             .all(|a| a.values.len() == points && a.values.iter().all(|x| x.is_finite()))
     );
+    // What they say of viewpoints is what a cloud takes.
+    assert!(points == 0 || cloud.to_cloud().is_ok());
 }
 
 /// Points and rows left out.

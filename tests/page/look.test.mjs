@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { colorAt } from '../../www/src/look/colormap.js';
+import { colorAt } from '../../pkg/viewer/colormap.js';
 import { PATIENCE, start } from './browser.mjs';
 import { colorsOf, difference, meanColor, silhouette } from './pictures.mjs';
 import { spherePoints, toXyz } from './scans.mjs';

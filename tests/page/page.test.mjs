@@ -15,6 +15,17 @@ async function withSample(t, server = {}, options = {}, prepare = undefined) {
   return site;
 }
 
+/** Remembers the graphics contexts of the page: its canvases share one that is in no document. */
+const noteContexts = (page) => page.addInitScript(() => {
+  globalThis.contexts = [];
+  const original = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+    const context = original.call(this, kind, ...rest);
+    if (kind === 'webgl2' && context) globalThis.contexts.push(context);
+    return context;
+  };
+});
+
 for (const isolated of [true, false]) {
   test(`opens with a meshed sample, ${isolated ? 'isolated: threads' : 'not isolated: one thread'}`, { timeout: PATIENCE }, async (t) => {
     const requests = [];
@@ -45,7 +56,7 @@ for (const isolated of [true, false]) {
 }
 
 test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
-  const site = await withSample(t);
+  const site = await withSample(t, {}, {}, noteContexts);
   const { page } = site;
 
   await t.test('keyboard alone', async () => {
@@ -133,8 +144,9 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
   await t.test('the picture comes back when the graphics context was lost', async () => {
     const before = await site.picture();
     await page.evaluate(async () => {
-      const canvas = document.querySelector('canvas');
-      const context = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+      const [shared] = globalThis.contexts;
+      const { canvas } = shared;
+      const context = shared.getExtension('WEBGL_lose_context');
       const event = (type) => new Promise((heard) => canvas.addEventListener(type, heard, { once: true }));
       const lost = event('webglcontextlost');
       context.loseContext();

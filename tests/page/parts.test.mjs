@@ -5,14 +5,14 @@ import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import { DEFAULTS, reconstruct, reduce, sample } from 'pointweave';
 import { ticks } from '../../www/src/controls/chart.js';
-import { UNKNOWN, colorAt, colorize } from '../../www/src/look/colormap.js';
-import { localSpacing } from '../../www/src/session/density.js';
+import { UNKNOWN, colorAt, colorize } from '../../pkg/viewer/colormap.js';
+import { localSpacing } from '../../pkg/viewer/density.js';
+import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
+import { likelyUp } from '../../pkg/viewer/upright.js';
 import { doubtsAbout } from '../../www/src/results/doubts.js';
 import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
-import { creases, sharpPoints } from '../../www/src/look/sharp.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
-import { likelyUp } from '../../www/src/look/upright.js';
 import { WORDS } from '../../www/src/results/words.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
@@ -76,14 +76,13 @@ test('holes are counted by their rims', () => {
 
 test('sharp places are on the edges of the part, and hardly anywhere on the duck', async () => {
   const share = (flags) => flags.reduce((sum, is) => sum + is, 0) / flags.length;
-  const scanOf = (cloud) => ({ cloud, count: cloud.positions.length / 3, frame: { diagonal: 16 } });
   const [part, duck] = await Promise.all(['part', 'duck'].map((model) => sample(model, { count: 12_000 })));
   const [edges, feathers] = await Promise.all([part, duck].map((cloud) => reduce(cloud)));
-  assert.ok(share(sharpPoints(edges, scanOf(part))) > 3 * share(sharpPoints(feathers, scanOf(duck))));
+  assert.ok(share(sharpPoints(edges, part, 16)) > 3 * share(sharpPoints(feathers, duck, 16)));
   assert.ok(share(creases(await reconstruct(part))) > 3 * share(creases(await reconstruct(duck))));
   // A flatness target keeps samples as they are: these count as sharp.
   const flat = await reduce(part, { target: { flatness: 6e-4 } });
-  const flags = sharpPoints(flat, scanOf(part));
+  const flags = sharpPoints(flat, part, 16);
   const kept = [...flat.weights].filter((weight, i) => weight === 1
     && [0, 1, 2].every((axis) => Math.abs(flat.positions[3 * i + axis] - part.positions[3 * flat.nearest[i] + axis]) < 1e-5)).length;
   assert.ok(kept > 100 && share(flags) * flags.length >= kept, `${kept} kept`);
@@ -133,12 +132,12 @@ test('a mesh that is better not relied on is said to be none', () => {
 });
 
 test('what was surveyed stands on its z, and so does what is flat', () => {
-  const scan = (size, cloud = {}) => /** @type {any} */ ({ cloud: { positions: new Float32Array(0), ...cloud }, frame: { size } });
-  assert.equal(likelyUp(scan([1, 2, 1])), 'Y');
-  assert.equal(likelyUp(scan([10, 20, 2])), 'Z');
-  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'las' } })), 'Z');
-  assert.equal(likelyUp(scan([24, 29, 36], { file: { format: 'ply' } })), 'Y');
-  assert.equal(likelyUp(scan([3, 3, 3], { file: { format: 'xyz' }, origin: [5e5, 5e6, 0] })), 'Z');
+  assert.equal(likelyUp({}, [1, 2, 1]), 'y');
+  assert.equal(likelyUp({}, [10, 20, 2]), 'z');
+  assert.equal(likelyUp({ file: { format: 'las' } }, [24, 29, 36]), 'z');
+  assert.equal(likelyUp({ file: { format: 'ply' } }, [24, 29, 36]), 'y');
+  assert.equal(likelyUp({ file: { format: 'xyz' }, origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
+  assert.equal(likelyUp({ file: { format: 'las' }, up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
 });
 
 test('what is kept, in words', () => {

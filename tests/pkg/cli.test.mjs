@@ -13,9 +13,10 @@ import { validateBytes } from 'gltf-validator';
 import { inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { parse } from '../../pkg/cli/arguments.js';
 import { openInput, writeOutput } from '../../pkg/cli/files.js';
-import { WORDS } from '../../pkg/cli/help.js';
+import { WORDS } from '../../pkg/cli/flags.js';
 import { UsageError } from '../../pkg/cli/usage.js';
-import { TABLES, TARGETS } from '../../pkg/engine/options.js';
+import { TARGETS } from '../../pkg/engine/options-table.js';
+import { TABLES } from '../../pkg/engine/options.js';
 import { openPage } from './browser.mjs';
 import { rejection } from './support.mjs';
 

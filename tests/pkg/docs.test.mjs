@@ -104,8 +104,8 @@ async function runUnder(t, code) {
 
 /** The fenced blocks of a page, each with the comment before it. */
 const FENCED = /(?:<!-- (.*) -->\n)?```(\w*)\n([^]*?)```/g;
-/** The pages of these have an element: `tests/element` opens them. */
-const EMBED = 'docs/embed.md';
+/** The pages of these have pictures in them: `tests/element` opens them. */
+const PICTURES = ['docs/embed.md', 'docs/viewer.md'];
 const names = ['../README.md', 'README.md', ...(await readdir(new URL('docs/', PACKAGE))).map((name) => `docs/${name}`)];
 const pages = await Promise.all(names.map(async (name) => ({ name, text: await readFile(new URL(name, PACKAGE), 'utf8') })));
 for (const { name, text } of pages) {
@@ -124,7 +124,7 @@ for (const { name, text } of pages) {
 
   let number = 0;
   for (const [, where, language, code] of text.matchAll(FENCED)) {
-    if (language === 'rust' || (name === EMBED && language)) continue;
+    if (language === 'rust' || (PICTURES.includes(name) && language)) continue;
     test(`${name}, snippet ${++number}`, async (t) => {
       if (!language) return runInShell(code);
       if (language === 'http') return runUnder(t, code);

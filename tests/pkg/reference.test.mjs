@@ -19,7 +19,10 @@ test('a reference is generated from the types and the pages', async (t) => {
   const typedoc = join(tests, 'node_modules/typedoc/bin/typedoc');
   await promisify(execFile)(process.execPath, [typedoc, '--options', join(tests, 'typedoc.json'), '--out', out]);
   const written = (await readdir(out, { recursive: true })).map((file) => file.replace(/^.*[\\/]/, ''));
-  for (const name of [api, core, element, { compress: true }].flatMap(Object.keys)) {
+    const viewer = await readFile(new URL('../../pkg/viewer.js', import.meta.url), 'utf8'); // it needs three.js beside it
+  const ofViewer = [...viewer.matchAll(/export \{ (.*) \}/g)].flatMap(([, names]) => names.split(', '));
+  assert.ok(ofViewer.includes('createViewer'));
+  for (const name of [...[api, core, element, { compress: true }].flatMap(Object.keys), ...ofViewer]) {
     assert.ok(written.some((file) => file === `${name}.html` || file.endsWith(`.${name}.html`)), name);
   }
   const page = await readFile(join(out, 'interfaces', written.find((file) => file.endsWith('ReduceOptions.html'))), 'utf8');

@@ -1,23 +1,21 @@
 /**
- * A key: what it is called in the help, what it does in words, and what it does.
- * @typedef {{ key: string, also?: string[], shown?: string, does?: string, act: () => void }} Key
+ * A key: what it is called in the help, what it does in words, and what it does, unless somebody else does it.
+ * @typedef {{ key: string, also?: string[], shown?: string, does?: string, act?: () => void }} Key
  */
 
 /** What takes letters itself. */
 const TYPING = 'input:not([type="checkbox"], [type="radio"], [type="range"]), textarea, select, dialog';
 
 /**
- * Keys for the picture. Arrows act while the picture has the focus, the others wherever nobody types.
+ * Keys of the page, wherever nobody types. While the picture has the focus, it takes its own.
  * @param {Key[]} keys  by KeyboardEvent.key, letters in lower case
  */
 export function listenToKeys(keys) {
   const actions = new Map(keys.flatMap(({ key, also = [], act }) => [key, ...also].map((name) => [name, act])));
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const focus = document.activeElement;
-    const heard = event.key.startsWith('Arrow') ? focus instanceof HTMLCanvasElement : !focus?.closest(TYPING);
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
     const act = actions.get(event.key.length === 1 ? event.key.toLowerCase() : event.key);
-    if (!act || !heard) return;
+    if (!act || document.activeElement?.closest(TYPING)) return;
     event.preventDefault();
     act();
   });

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::glue;
+use crate::options;
 use crate::setup;
 use crate::shell::{Result, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
@@ -139,8 +140,9 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: what is written from the table of options, and pkg/wasm/single, threads, files, las and e57.
 pub fn build() -> Result<()> {
+    options::write()?;
     let toolchain = toolchain::wasm()?;
     let tools = setup::wasm_tools()?;
     setup::npm(&root().join("xtask"))?;

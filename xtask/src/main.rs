@@ -5,6 +5,7 @@
 
 mod build;
 mod glue;
+mod options;
 mod page;
 mod setup;
 mod shell;
@@ -20,7 +21,8 @@ Pointweave's own commands. Each sets up what is missing first.
 
 Usage: cargo xtask <command> [options]
 
-  build                 all wasm builds, into pkg/wasm/
+  build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
+  options               what the table of options says, and nothing else
   serve [--port N]      the builds and the page, served on localhost (default port 8080)
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,element,page
@@ -43,16 +45,17 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &[String]) -> Result<()> {
-    let (command, options) = match args.split_first() {
-        Some((command, options)) => (command.as_str(), options),
+    let (command, arguments) = match args.split_first() {
+        Some((command, arguments)) => (command.as_str(), arguments),
         None => ("help", args),
     };
     match command {
-        "build" => expect_no_options(options).and_then(|()| build::build()),
-        "serve" => page::serve(port(options)?),
-        "test" => test::test(&test::selection(options)?),
-        "bench" => page::bench(options),
-        "setup" => expect_no_options(options).and_then(|()| setup::everything()),
+        "build" => expect_no_options(arguments).and_then(|()| build::build()),
+        "options" => expect_no_options(arguments).and_then(|()| options::write()),
+        "serve" => page::serve(port(arguments)?),
+        "test" => test::test(&test::selection(arguments)?),
+        "bench" => page::bench(arguments),
+        "setup" => expect_no_options(arguments).and_then(|()| setup::everything()),
         "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(())

@@ -12,7 +12,7 @@ export class Amount {
   #field;
   #timer = 0;
   /** @type {Range} */
-  #range = { low: 0.1, high: 1, unit: '' };
+  #range = { low: 0.1, high: 1, least: 0.1, most: 1, open: '', unit: '' };
   /** What holds while the field is empty; null where it may not be. @type {number | null} */
   #otherwise = null;
 
@@ -50,7 +50,7 @@ export class Amount {
       }
       const value = field.valueAsNumber / (this.#range.times ?? 1);
       const fits = isInside(this.#range, value);
-      field.setCustomValidity(fits ? '' : `from ${this.#text(this.#range.least ?? this.#range.low)} to ${this.#text(this.#range.most ?? this.#range.high)}`);
+      field.setCustomValidity(fits ? '' : this.#accepted());
       if (!fits) return this.#forget();
       slider.valueAsNumber = this.#stepOf(value);
       change(value, 2 * PAUSE_MS);
@@ -81,6 +81,12 @@ export class Amount {
   describe(/** @type {string} */ words) {
     const shown = this.#field.value || this.#field.placeholder;
     this.#slider.setAttribute('aria-valuetext', `${shown} ${this.#range.unit.replace('%', 'per cent')} ${words}`.trim());
+  }
+
+  /** What the field takes, in words. */
+  #accepted() {
+    const { least, most, open } = this.#range;
+    return `${open.includes('(') ? 'above' : 'from'} ${this.#text(least)} ${open.includes(')') ? 'and below' : 'to'} ${this.#text(most)}`;
   }
 
   #forget() {

@@ -128,7 +128,7 @@ export class Controls {
       const unit = element('span', { textContent: control.unit });
       const amount = new Amount(slider, field, () => {}, take);
       this.#refreshers.push(() => {
-        const fallback = control.follows?.(settings) ?? defaultOf(key);
+        const fallback = control.follows?.[String(settings.get('method'))] ?? defaultOf(key);
         const chosen = /** @type {number | undefined} */ (settings.values[key]);
         const number = typeof fallback === 'number' ? fallback : Math.sqrt(control.low * control.high);
         const shown = typeof fallback === 'number' ? String(Number((fallback * (control.times ?? 1)).toPrecision(3))) : String(fallback);

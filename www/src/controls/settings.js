@@ -1,4 +1,5 @@
 import { DEFAULTS } from 'pointweave';
+import { FIELDS, TARGETS } from './fields-table.js';
 
 /**
  * @import { ReconstructOptions, ReduceOptions } from 'pointweave'
@@ -7,60 +8,28 @@ import { DEFAULTS } from 'pointweave';
  * @typedef {{ label: string, hint: string, in: 'reduce' | 'reconstruct' }} Common
  * @typedef {Common & { kind: 'choice', choices: Record<string, string> }} Choice
  * @typedef {Common & { kind: 'flag' }} Flag
- * @typedef {Common & Range & { kind: 'number', follows?: (settings: Settings) => number, auto?: boolean }} Amount
+ * @typedef {Common & Range & { kind: 'number', follows?: Record<string, number>, auto?: boolean }} Amount  `follows`: the default by method
  * @typedef {Choice | Flag | Amount} Control
  *
  * A number's slider and field. The slider's steps multiply, so that small values have as much room as large ones.
  * @typedef {object} Range
  * @property {number} low  the slider's ends
  * @property {number} high
- * @property {number} [least]  what the field takes, where that is more
- * @property {number} [most]
+ * @property {number} least  what the field takes
+ * @property {number} most
+ * @property {string} open  the ends that it does not take: '(' the lower, ')' the upper
  * @property {number} [times]  what is shown is the value times this: 100 for percentages
  * @property {string} unit  behind the field
  * @property {boolean} [whole]
  */
 
-/** Options that have a control, by their name in the package's table of defaults. */
-export const CONTROLS = /** @type {Record<string, Control>} */ ({
-  method: {
-    in: 'reduce', kind: 'choice', label: 'Method', choices: { adaptive: 'Adaptive', paper: 'As in the paper' },
-    hint: 'Adaptive keeps more points where the surface bends. The other is fuzzy c-means to the letter.',
-  },
-  fuzzifier: {
-    in: 'reduce', kind: 'number', label: 'Fuzzifier m', low: 1.05, high: 4, least: 1.001, most: 100, unit: '',
-    follows: ({ values }) => (values.method === 'paper' ? 2 : 1.5),
-    hint: 'How softly points belong to more than one cluster.',
-  },
-  accuracy: {
-    in: 'reconstruct', kind: 'number', label: 'Accuracy of the fit', low: 5e-5, high: 5e-3, least: 1e-6, most: 0.5, times: 100, unit: '%',
-    hint: 'Patches are divided until they are this close to the points, in per cent of the diagonal.',
-  },
-  smoothing: {
-    in: 'reconstruct', kind: 'number', label: 'Smoothing', low: 1e-4, high: 10, least: 0, most: 1e6, unit: '', auto: true,
-    hint: 'Left empty, it follows the noise that was measured.',
-  },
-  sharp: { in: 'reconstruct', kind: 'flag', label: 'Keep creases sharp', hint: 'Edges and corners stay; without it they are rounded.' },
-  boundary: {
-    in: 'reconstruct', kind: 'choice', label: 'Holes', choices: { auto: 'Close small ones', closed: 'Close all', open: 'Leave open' },
-    hint: 'What happens where nothing was scanned.',
-  },
-});
+/** Options that have a control, by name. */
+export const CONTROLS = /** @type {Record<string, Control>} */ (FIELDS);
 
-/** The ways to say how much is kept; `start` is where a change to it begins. */
-export const TARGETS = {
-  ratio: { label: 'Share of the points', low: 0.005, high: 1, least: 0.001, most: 1, times: 100, unit: '%', start: /** @type {{ ratio: number }} */ (DEFAULTS.reduce.target).ratio },
-  count: { label: 'Number of points', low: 64, high: 1e6, least: 1, most: 1e8, unit: '', whole: true, start: 10_000 },
-  tolerance: { label: 'Tolerance', low: 1e-4, high: 0.02, least: 1e-6, most: 0.5, times: 100, unit: '%', start: 1e-3 },
-  flatness: { label: 'Flatness λ', low: 1e-5, high: 0.01, least: 1e-9, most: 1, unit: '', start: 6e-4 },
-};
+export { TARGETS };
 
 /** @typedef {keyof typeof TARGETS} TargetKind */
 /** @typedef {{ kind: TargetKind, value: number }} Target */
-
-for (const [key, { in: table }] of Object.entries(CONTROLS)) {
-  if (!(key in DEFAULTS[table])) throw new Error(`the package has no option ${table}.${key}`);
-}
 
 /** The options that the person has chosen; what is not chosen is the package's default. */
 export class Settings {
@@ -124,8 +93,10 @@ export function defaultOf(/** @type {string} */ key) {
 }
 
 /** Whether the field takes this value. */
-export function isInside(/** @type {Range} */ { low, high, least = low, most = high, whole }, /** @type {number} */ value) {
-  return value >= least && value <= most && (!whole || Number.isInteger(value));
+export function isInside(/** @type {Range} */ { least, most, open, whole }, /** @type {number} */ value) {
+  const above = open.includes('(') ? value > least : value >= least;
+  const below = open.includes(')') ? value < most : value <= most;
+  return above && below && (!whole || Number.isInteger(value));
 }
 
 function valueOf(/** @type {Control} */ control, /** @type {string} */ word) {

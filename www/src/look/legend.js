@@ -1,7 +1,7 @@
-import { cssGradient } from './colormap.js';
+import { cssGradient } from 'pointweave/viewer';
 import { byId, element } from '../dom.js';
 
-/** @import { Kinds, Scale } from './paints.js' */
+/** @import { Kinds, Scale } from 'pointweave/viewer' */
 
 /** How the colours in the picture are read. */
 export class Legend {

@@ -1,21 +1,29 @@
+import { PAINTS, PAINT_WORDS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
 import { announce, byId, element } from '../dom.js';
+import * as format from '../results/format.js';
 import { Legend } from './legend.js';
-import { PAINTS, isPossible, paintOf } from './paints.js';
 import { Split } from './split.js';
 import { followTheme } from './theme.js';
-import { likelyUp } from './upright.js';
-import { Viewer } from '../viewer.js';
 
 /**
+ * @import { Axis, Paint, PaintName, Side } from 'pointweave/viewer'
  * @import { Key } from '../keys.js'
- * @import { Side } from '../orbit.js'
- * @import { Paint, PaintName } from './paints.js'
  * @import { Outcome, Scan } from '../session/session.js'
- * @import { View } from '../viewer.js'
+ * @typedef {'points' | 'reduced' | 'mesh'} View
  * @typedef {View | 'compare'} Choice
  */
 
-const TURN = Math.PI / 24;
+/** Room for what lies over the picture, in CSS pixels. On narrow screens the tools stand at the right. */
+const INSETS = { top: 72, bottom: 76 };
+const NARROW = '(max-width: 620px)';
+const TOOLS = 48;
+
+/** The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land and rooms, depth cameras (whose y points down), and the rest. @type {Record<Axis, string>} */
+const UPS = { y: 'Y', z: 'Z', '-y': '−Y', '-z': '−Z', x: 'X', '-x': '−X' };
+
+/** Legends in the page's numbers. */
+const WORDS = { ...PAINT_WORDS, length: format.length, percent: format.percent };
+
 const VIEWS = /** @type {const} */ (['points', 'reduced', 'mesh', 'compare']);
 const NAMES = { points: 'Scan', reduced: 'Reduced points', mesh: 'Mesh', compare: 'Comparison' };
 
@@ -55,15 +63,15 @@ export class Look {
     this.#changed = changed;
     const viewer = this.#viewer;
     byId('no-webgl', HTMLElement).hidden = Boolean(viewer);
-    this.#paints.append(...Object.entries(PAINTS).map(([name, words]) => paintChoice(name, words)));
-    if (viewer) followTheme((theme) => viewer.setTheme(theme));
-    byId('fit', HTMLButtonElement).addEventListener('click', () => viewer?.orbit.fit());
+    this.#paints.append(...PAINTS.map((name) => paintChoice(name, WORDS.names[name])));
+    if (viewer) followTheme((theme) => (viewer.colors = theme));
+    byId('fit', HTMLButtonElement).addEventListener('click', () => viewer?.fit());
     byId('up', HTMLButtonElement).addEventListener('click', () => this.#turnUp());
     this.#views.addEventListener('change', (event) => this.#choose(/** @type {Choice} */ (valueOf(event))));
     this.#paints.addEventListener('change', (event) => this.#choosePaint(/** @type {PaintName} */ (valueOf(event))));
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
     this.#boxes.addEventListener('change', () => this.#showBoxes());
-    this.#parallel.addEventListener('change', () => viewer?.orbit.setParallel(this.#parallel.checked));
+    this.#parallel.addEventListener('change', () => viewer && (viewer.parallel = this.#parallel.checked));
     for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-side]'))) {
       button.addEventListener('click', () => this.#lookFrom(/** @type {Side} */ (button.dataset.side)));
     }
@@ -78,7 +86,7 @@ export class Look {
     const wanted = VIEWS.find((name) => name === view) ?? null;
     this.#chosen = wanted;
     this.#wished = wanted !== null;
-    this.#paint = paint !== null && Object.hasOwn(PAINTS, paint) ? /** @type {PaintName} */ (paint) : 'natural';
+    this.#paint = PAINTS.find((name) => name === paint) ?? 'natural';
     if (this.#outcome) this.#settle();
   }
 
@@ -87,7 +95,7 @@ export class Look {
     this.#outcome = null;
     if (!this.#wished) this.#chosen = null;
     this.#wished = false;
-    this.#viewer?.open(scan.cloud, scan.frame, likelyUp(scan));
+    this.#viewer?.show(bare({ ...scan.cloud, normals: undefined }), { frame: scan.frame });
     for (const view of VIEWS) radio('view', view).disabled = view !== 'points';
     this.#offerPaints();
     this.#show('points');
@@ -96,8 +104,8 @@ export class Look {
   made(/** @type {Outcome} */ outcome) {
     this.#outcome = outcome;
     const { reduced, mesh } = outcome;
-    this.#viewer?.set('reduced', reduced);
-    this.#viewer?.set('mesh', mesh);
+    this.#viewer?.set('reduced', bare({ ...reduced, oriented: Boolean(mesh) }));
+    this.#viewer?.set('mesh', mesh && bare(mesh));
     for (const view of VIEWS) radio('view', view).disabled = view === 'mesh' && !mesh;
     this.#split.offerMesh(Boolean(mesh));
     this.#showBoxes();
@@ -106,25 +114,22 @@ export class Look {
 
   /** @returns {Key[]} */
   get keys() {
-    const orbit = this.#viewer?.orbit;
+    const viewer = this.#viewer;
     const from = (/** @type {Side} */ side) => () => this.#lookFrom(side);
     return [
       ...VIEWS.map((view, i) => ({ key: String(i + 1), does: NAMES[view], act: () => this.#chooseByKey(view) })),
       { key: 'c', does: 'Next colours', act: () => this.#nextPaint() },
       { key: 'e', does: 'Edges of the triangles', act: () => this.#edges.click() },
       { key: 'b', does: 'Boxes of the octree', act: () => this.#boxes.click() },
-      { key: 'f', does: 'Fit the view', act: () => orbit?.fit() },
+      { key: 'f', does: 'Fit the view', act: () => viewer?.fit() },
       { key: 'u', does: 'Turn another side up', act: () => this.#turnUp() },
       { key: 'v', shown: 'V R T', does: 'Look from the front, the right, the top', act: from('front') },
       { key: 'r', act: from('right') },
       { key: 't', act: from('top') },
       { key: 'p', does: 'Perspective or parallel lines', act: () => this.#parallel.click() },
-      { key: '+', also: ['='], shown: '+ −', does: 'Nearer, farther', act: () => orbit?.zoom(1 / 1.2) },
-      { key: '-', act: () => orbit?.zoom(1.2) },
-      { key: 'ArrowLeft', shown: '← → ↑ ↓', does: 'Turn, while the picture has the focus', act: () => orbit?.turn(-TURN, 0) },
-      { key: 'ArrowRight', act: () => orbit?.turn(TURN, 0) },
-      { key: 'ArrowUp', act: () => orbit?.turn(0, TURN) },
-      { key: 'ArrowDown', act: () => orbit?.turn(0, -TURN) },
+      { key: '+', also: ['='], shown: '+ −', does: 'Nearer, farther', act: () => viewer?.zoom(1 / 1.2) },
+      { key: '-', act: () => viewer?.zoom(1.2) },
+      { key: 'Arrows', shown: '← → ↑ ↓', does: 'Turn, while the picture has the focus' },
     ];
   }
 
@@ -158,15 +163,16 @@ export class Look {
     if (compared) this.#color(left);
     const paint = this.#color(compared ? right : view);
     this.#legend.show(paint?.legend ?? null);
-    this.#viewer?.show(compared ? { left, right, at: this.#split.at } : { view });
+    if (this.#viewer) this.#viewer.view = compared ? { left, right, at: this.#split.at } : view;
   }
 
   /** Gives a layer the chosen colours, unless it has them. */
   #color(/** @type {View} */ view) {
     const known = this.#painted.get(view);
+    const subject = this.#subject;
     const drawn = view === 'points' || Boolean(this.#outcome?.[view]);
-    if (known || !this.#scan || !drawn) return known;
-    const paint = paintOf(this.#paint, view, { scan: this.#scan, outcome: this.#outcome });
+    if (known || !subject || !drawn) return known;
+    const paint = paintOf(this.#paint, view, subject, WORDS);
     this.#viewer?.paint(view, paint);
     this.#painted.set(view, paint);
     return paint;
@@ -182,10 +188,10 @@ export class Look {
   #nextPaint() {
     const subject = this.#subject;
     if (!subject) return;
-    const names = /** @type {PaintName[]} */ (Object.keys(PAINTS)).filter((name) => isPossible(name, subject));
+    const names = PAINTS.filter((name) => canPaint(name, subject));
     const next = names[(names.indexOf(this.#paint) + 1) % names.length];
     this.#choosePaint(next);
-    announce(`Colours: ${PAINTS[next]}`);
+    announce(`Colours: ${WORDS.names[next]}`);
   }
 
   /** What can be chosen now; every layer is to be coloured anew. */
@@ -193,9 +199,9 @@ export class Look {
     this.#painted.clear();
     const subject = this.#subject;
     if (!subject) return;
-    for (const name of /** @type {PaintName[]} */ (Object.keys(PAINTS))) {
+    for (const name of PAINTS) {
       const input = radio('paint', name);
-      input.disabled = !isPossible(name, subject);
+      input.disabled = !canPaint(name, subject);
       input.checked = name === this.#paint;
     }
   }
@@ -207,28 +213,43 @@ export class Look {
   }
 
   get #subject() {
-    return this.#scan && { scan: this.#scan, outcome: this.#outcome };
+    const { cloud, frame } = this.#scan ?? {};
+    return cloud && { cloud, frame, reduced: this.#outcome?.reduced, mesh: this.#outcome?.mesh };
   }
 
   #lookFrom(/** @type {Side} */ side) {
-    this.#viewer?.orbit.look(side);
+    this.#viewer?.lookFrom(side);
     this.#parallel.checked = true;
     announce(`Seen from the ${side}`);
   }
 
   #turnUp() {
-    if (this.#viewer) announce(`${this.#viewer.orbit.nextUp()} is up`);
+    if (!this.#viewer) return;
+    const axes = /** @type {Axis[]} */ (Object.keys(UPS));
+    const next = axes[(axes.indexOf(this.#viewer.upright) + 1) % axes.length];
+    this.#viewer.up = next;
+    announce(`${UPS[next]} is up`);
   }
 }
 
 /** The viewer, or null where there is no WebGL 2: the rest of the page works without it. */
 function openViewer() {
   try {
-    return new Viewer(byId('canvas', HTMLCanvasElement));
+    const viewer = createViewer(byId('canvas', HTMLCanvasElement), { embedded: false, insets: INSETS });
+    const narrow = matchMedia(NARROW);
+    const follow = () => (viewer.insets = { right: narrow.matches ? TOOLS : 0 });
+    narrow.addEventListener('change', follow);
+    follow();
+    return viewer;
   } catch (error) {
     console.warn('Pointweave draws nothing:', error);
     return null;
   }
+}
+
+/** Without its colours: paints give it some. @template {import('pointweave/viewer').Drawable} Source @param {Source} source */
+function bare(source) {
+  return { ...source, colors: undefined };
 }
 
 function paintChoice(/** @type {string} */ name, /** @type {string} */ words) {

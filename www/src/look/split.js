@@ -1,6 +1,6 @@
 import { byId } from '../dom.js';
 
-/** @import { View } from '../viewer.js' */
+/** @import { View } from './look.js' */
 
 const STEP = 0.02;
 

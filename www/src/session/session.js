@@ -1,13 +1,13 @@
 import { createEngine, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { frameOf } from 'pointweave/viewer';
 import { fetchBytes, ownAddress } from './fetching.js';
-import { frameOf } from '../frame.js';
 import { splitOrigin } from './origin.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 
 /**
  * @import { FileCloud, PointCloud, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
- * @import { Frame } from '../frame.js'
+ * @import { Frame } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
  * @import { Target } from '../controls/settings.js'
  *

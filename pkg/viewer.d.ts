@@ -1,0 +1,267 @@
+/**
+ * Clouds, meshes and GLBs on a canvas. It needs three.js (an optional peer of the package).
+ */
+import type { FileCloud, PointCloud, ReducedCloud, SurfaceMesh } from './types.js';
+
+/** An axis that points up. */
+export type Axis = 'y' | 'z' | '-y' | '-z' | 'x' | '-x';
+/** A side to look at straight; the front is where the first look comes from. */
+export type Side = 'front' | 'back' | 'right' | 'left' | 'top' | 'bottom';
+/** Who moved the camera. */
+export type Mover = 'pointer' | 'keys' | 'program';
+
+/** Positions in the caller's frame and unit. */
+export interface Placed {
+  positions: Float32Array | Float64Array;
+  /** Added to positions to give world coordinates. Default 0 0 0. */
+  origin?: [number, number, number];
+}
+
+/**
+ * What a layer is made of: points, or a mesh where there are `indices`. Any cloud or mesh of the package is one. Nothing is changed;
+ * normals, indices and colours are used as they are, so leave them alone while they are shown.
+ */
+export interface Drawable extends Placed {
+  /** Unit vectors. A mesh without is given smooth ones; points without are shaded by depth alone. */
+  normals?: Float32Array;
+  /** The normals of points are directed outwards: the far side is let through. Default false. */
+  oriented?: boolean;
+  /** sRGB, one triple a point or vertex. */
+  colors?: Uint8Array;
+  /** Three a triangle. */
+  indices?: Uint32Array;
+  /** Which way is up, where that is known. */
+  up?: [number, number, number];
+  /** Of a cloud that was read: formats of surveying have z up. */
+  file?: Pick<FileCloud['file'], 'format'>;
+}
+
+/** A GLB that was read by {@link readGlb}. */
+export interface Model {
+  readonly kind: 'glb';
+}
+
+/** The box that pictures are fitted to, in world units. */
+export interface Frame {
+  center: [number, number, number];
+  /** Edge lengths. */
+  size: [number, number, number];
+  /** 1 where all points coincide. */
+  diagonal: number;
+}
+
+/** Two layers beside each other. */
+export interface Split {
+  left: string;
+  right: string;
+  /** Where they meet: a share of the width, 0 to 1. */
+  at: number;
+}
+
+/** Any CSS colours, for what has no colours of its own; `reduced` is for the layer of that name. */
+export interface LayerColors {
+  points: string;
+  mesh: string;
+  reduced: string;
+  edges: string;
+  boxes: string;
+}
+
+/** Room at the edges of the canvas for what lies over the picture, in CSS pixels. At most 40 % of a side's length is given. */
+export interface Insets {
+  top: number;
+  right: number;
+  bottom: number;
+  left: number;
+}
+
+/** Where one looks from. */
+export interface Pose {
+  /** Degrees around, 0 is the front, 90 the right. */
+  azimuth: number;
+  /** Degrees above the horizon. */
+  elevation: number;
+  /** 1 shows the whole, 2 is twice as near. */
+  zoom: number;
+}
+
+export interface ViewerOptions {
+  /** Pointer and keys move it. Default true. */
+  interactive?: boolean;
+  /**
+   * While the canvas has the focus, arrow keys turn, `+` and `-` zoom, Home starts over. Default true; a canvas without a `tabindex`
+   * gets one.
+   */
+  keys?: boolean;
+  /**
+   * The canvas is a part of a page that scrolls: a vertical swipe scrolls the page, and so does the wheel until the canvas has the
+   * focus. Default true; false where the picture is the page.
+   */
+  embedded?: boolean;
+  /** Turns slowly, unless the person prefers less motion. Default false. */
+  autoRotate?: boolean;
+  /** Default `'auto'`: what the data say; z of maps and of what is wide and flat; else y. */
+  up?: Axis | 'auto';
+  colors?: Partial<LayerColors>;
+  insets?: Partial<Insets>;
+}
+
+/** How values are read from colours: low and high are the values at the ends of the colour map. */
+export interface Scale {
+  title: string;
+  note: string;
+  low: number;
+  high: number;
+  /** A value with its unit, in words. */
+  words: (value: number) => string;
+}
+
+/** What a few colours mean: CSS colours and names. */
+export interface Kinds {
+  title: string;
+  note: string;
+  kinds: [color: string, name: string][];
+}
+
+/** The colours of a layer. */
+export interface Paint {
+  /** sRGB, one triple a point or vertex; null for the viewer's. */
+  colors: Uint8Array | null;
+  /** How they are read. What has a legend is shaded less, so that its colours can be compared. */
+  legend: Scale | Kinds | null;
+}
+
+export interface ViewerEventMap {
+  /** The camera has moved; once a frame. */
+  move: CustomEvent<{ by: Mover }>;
+  /** The browser has taken WebGL away. The picture stays. */
+  contextlost: Event;
+  /** WebGL is there again, and the picture is drawn anew. */
+  contextrestored: Event;
+}
+
+/** A canvas with layers. All viewers of a page share one WebGL context, and draw only when something changed and they are seen. */
+export interface Viewer extends EventTarget {
+  /**
+   * Shows a cloud, a mesh or a GLB alone, whole, from the first look: as the layer `'points'` or `'mesh'`, of a GLB as both where it
+   * holds both. What else is set later is placed beside it, in world coordinates.
+   * @param options frame: what to fit, where it is known; default is the box of what is shown
+   */
+  show(what: Drawable | Model, options?: { frame?: Frame }): void;
+  /** Adds or replaces a layer, of at most 31; null removes it. What would be cut off is fitted in, unless somebody has looked around. */
+  set(layer: string, what: Drawable | null): void;
+  has(layer: string): boolean;
+  readonly layers: string[];
+  /** Points or vertices, and triangles, of a layer. */
+  size(layer: string): { points: number; triangles: number };
+  /** The layer that is seen, or two that meet at a divider. */
+  view: string | Split;
+  /** Colours a layer; those of a GLB keep their own. */
+  paint(layer: string, paint: Paint): void;
+  /** Draws the edges of triangles over meshes. Default no. */
+  showEdges(shown: boolean): void;
+  /** Draws boxes over every layer, by their lowest and highest corners; null for none. */
+  showBoxes(corners: Placed | null): void;
+  /** Assigning changes those that are given. */
+  get colors(): LayerColors;
+  set colors(colors: Partial<LayerColors>);
+  /** Assigning changes those that are given. */
+  get insets(): Insets;
+  set insets(insets: Partial<Insets>);
+  /** Assigning stands what is shown on that side, and fits it. */
+  up: Axis | 'auto';
+  /** What is up now, also where `up` is `'auto'`. */
+  readonly upright: Axis;
+  interactive: boolean;
+  autoRotate: boolean;
+  /** Parallel projection instead of perspective. Default false. */
+  parallel: boolean;
+  readonly pose: Pose;
+  /** Turns around what is shown, in radians. */
+  turn(right: number, over: number): void;
+  /** Under 1 comes nearer. */
+  zoom(factor: number): void;
+  /** Back to the first look. */
+  home(): void;
+  /** Along the line of sight to where all is seen. */
+  fit(): void;
+  /** Straight at a side, in parallel projection. */
+  lookFrom(side: Side): void;
+  /** Draws at once; else it is drawn before the next frame. */
+  draw(): void;
+  /** The picture as it is shown, without background. Types and quality as `canvas.toBlob`. */
+  toBlob(type?: string, quality?: number): Promise<Blob | null>;
+  /** Removes all layers and boxes. */
+  clear(): void;
+  /** Frees the GPU and stops listening, as for a canvas that leaves the page; layers are kept. */
+  suspend(): void;
+  resume(): void;
+  /** Ends it: layers are removed, nothing listens. */
+  dispose(): void;
+
+  addEventListener<Type extends keyof ViewerEventMap>(
+    type: Type, listener: (this: Viewer, event: ViewerEventMap[Type]) => unknown, options?: boolean | AddEventListenerOptions): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}
+
+/**
+ * A viewer for a canvas, which must not have a context of another kind than `'2d'`. Its pixels follow its size in the page; one
+ * that is in no page keeps the pixels that it has. Throws `no-webgl` where there is no WebGL 2.
+ */
+export function createViewer(canvas: HTMLCanvasElement, options?: ViewerOptions): Viewer;
+
+/**
+ * Reads a GLB for {@link Viewer.show}: textures, vertex colours, points and meshes, `EXT_meshopt_compression`. Rejects with
+ * `bad-file`, `empty-cloud`, or `unsupported-file` where it needs Draco or Basis.
+ */
+export function readGlb(bytes: Uint8Array): Promise<Model>;
+
+/** The box of all finite coordinates. */
+export function frameOf(what: Placed): Frame;
+
+/**
+ * What colours can show: the scan's own, none, the direction of the surface, the distance between neighbours, the distance between
+ * scan and mesh, and sharp places.
+ */
+export type PaintName = 'natural' | 'plain' | 'normals' | 'density' | 'error' | 'sharp';
+
+/** In the order of a menu. */
+export const PAINTS: readonly PaintName[];
+
+/** What paints are made from. */
+export interface Subject {
+  cloud: PointCloud;
+  /** For `'error'` and for what input points take from it: computed with `assignment: true`. */
+  reduced?: ReducedCloud | null;
+  /** For `'error'`, computed with `distances: true`. */
+  mesh?: SurfaceMesh | null;
+  /** Of the cloud, where it is known. */
+  frame?: Frame;
+}
+
+/** Whether there is something to paint. */
+export function canPaint(name: PaintName, subject: Subject): boolean;
+
+/** The colours of a layer and how they are read. What is not possible is painted as `'natural'`. Cost: one pass over the points. */
+export function paintOf(name: PaintName, layer: 'points' | 'reduced' | 'mesh', subject: Subject, words?: PaintWords): Paint;
+
+/** Every word of paints and legends. */
+export interface PaintWords {
+  names: Record<PaintName, string>;
+  density: { title: string; note: string };
+  error: { titles: Record<'points' | 'reduced' | 'mesh', string>; note: string; unknown: string };
+  sharp: { title: string; sharp: string; smooth: string; note: (share: string, layer: 'points' | 'reduced' | 'mesh') => string };
+  /** A length in file units. */
+  length: (value: number) => string;
+  /** A share, as a percentage. */
+  percent: (share: number) => string;
+}
+
+/** The words in English. */
+export const PAINT_WORDS: PaintWords;
+
+/** The sRGB bytes of the colour map at a share of the way from the least to the greatest. */
+export function colorAt(share: number): [red: number, green: number, blue: number];
+
+/** The whole map as a CSS gradient to the right. */
+export function cssGradient(): string;

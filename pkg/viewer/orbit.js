@@ -1,0 +1,353 @@
+/** How one moves around: pointer, calls, a slow turn of its own, straight looks at the sides, and back to the first look. */
+import { MathUtils, Quaternion, Spherical, Vector3 } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { calm } from './watching.js';
+
+/** @import { Axis, Mover, Pose, Side } from '../viewer.js' */
+
+/** First look: from the front, a little from the right and above. */
+const FIRST_LOOK = new Vector3(0.55, 0.38, 1).normalize();
+const MARGIN = 1.1;
+const NEAREST = 0.02;
+const FARTHEST = 12;
+const FLIGHT_MS = 420;
+/** A slow turn: once around in half a minute; it rests a while after a hand was on it. */
+const TURN_PER_MS = (2 * Math.PI) / 30_000;
+const REST_MS = 3000;
+/** From so many sides what turns is looked at, to know whether it fits. */
+const VIEWS = 12;
+
+const quarter = (/** @type {number} */ x, /** @type {number} */ z, turns = 1) =>
+  new Quaternion().setFromAxisAngle(new Vector3(x, 0, z), (turns * Math.PI) / 2);
+
+/** What brings each axis up. @type {Record<Axis, Quaternion>} */
+const STAND = { y: new Quaternion(), z: quarter(-1, 0), '-y': quarter(1, 0, 2), '-z': quarter(1, 0), x: quarter(0, 1), '-x': quarter(0, -1) };
+
+/** The camera's angles: around the upright axis, and down from it. @type {Record<Side, [number, number]>} */
+const SIDES = {
+  front: [0, Math.PI / 2],
+  back: [Math.PI, Math.PI / 2],
+  right: [Math.PI / 2, Math.PI / 2],
+  left: [-Math.PI / 2, Math.PI / 2],
+  top: [0, 1e-4],
+  bottom: [0, Math.PI - 1e-4],
+};
+
+/** A move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, start: number, by: Mover }} Flight */
+
+export class Orbit {
+  #camera;
+  #root;
+  #element;
+  #embedded;
+  #changed;
+  /** @type {OrbitControls | undefined} */
+  #controls;
+  #target = new Vector3();
+  #enabled = false;
+  #turning = false;
+  /** Lines that are parallel look parallel: an orthographic projection. */
+  #parallel = false;
+  /** A few points of what is shown, in the frame. */
+  #outline = /** @type {Float32Array} */ (new Float32Array());
+  /** Where the camera was put so that all is seen. */
+  #fitted = new Spherical();
+  /** Nobody has moved since something new came. */
+  #untouched = true;
+  /** @type {Flight | null} */
+  #flight = null;
+  /** Who has moved last. @type {Mover} */
+  #mover = 'program';
+  #last = 0;
+  #restUntil = 0;
+  #updating = false;
+
+  /**
+   * @param {import('three').PerspectiveCamera} camera
+   * @param {import('three').Object3D} root what stands before the camera
+   * @param {HTMLElement} element takes the pointer
+   * @param {boolean} embedded wheel and vertical swipes are the page's until the element has the focus
+   * @param {(by: Mover) => void} changed asks for a new frame
+   */
+  constructor(camera, root, element, embedded, changed) {
+    this.#camera = camera;
+    this.#root = root;
+    this.#element = element;
+    this.#embedded = embedded;
+    this.#changed = changed;
+    camera.position.copy(FIRST_LOOK).multiplyScalar(2);
+  }
+
+  /** Listens to the pointer, or no longer. @param {boolean} on */
+  listen(on) {
+    if (on === Boolean(this.#controls)) return;
+    if (on) {
+      this.#controls = this.#connect();
+      if (this.#embedded) this.#element.addEventListener('wheel', this.#allowZoom, { capture: true, passive: true });
+    } else {
+      this.#target.copy(this.#aim);
+      this.#element.removeEventListener('wheel', this.#allowZoom, { capture: true });
+      this.#controls?.dispose();
+      this.#controls = undefined;
+    }
+    this.enable(this.#enabled);
+  }
+
+  #connect() {
+    const controls = new OrbitControls(this.#camera, this.#element);
+    controls.target.copy(this.#target);
+    controls.minDistance = NEAREST;
+    controls.maxDistance = FARTHEST;
+    controls.zoomSpeed = 1.4;
+    controls.addEventListener('start', () => {
+      this.#rest();
+      this.#mover = 'pointer';
+    });
+    // What moves while a frame is made is in that frame; only a movement that dies away needs another.
+    controls.addEventListener('change', () => {
+      if (!this.#updating || controls.enableDamping) this.#changed(this.#mover);
+    });
+    return controls;
+  }
+
+  /** A wheel over the picture scrolls the page, unless one has taken hold of the picture, or pinches. */
+  #allowZoom = (/** @type {WheelEvent} */ event) => {
+    const root = /** @type {Document | ShadowRoot} */ (this.#element.getRootNode());
+    if (this.#controls) this.#controls.enableZoom = event.ctrlKey || root.activeElement === this.#element;
+  };
+
+  /** Whether the pointer moves it. @param {boolean} on */
+  enable(on) {
+    this.#enabled = on;
+    if (this.#controls) this.#controls.enabled = on;
+    this.#element.style.touchAction = on ? (this.#embedded ? 'pan-y' : 'none') : '';
+    this.#element.style.cursor = '';
+  }
+
+  get enabled() {
+    return this.#enabled;
+  }
+
+  get autoRotate() {
+    return this.#turning;
+  }
+
+  set autoRotate(turns) {
+    this.#turning = turns;
+    this.#changed('program');
+  }
+
+  get turning() {
+    return this.#turning && !calm().wanted;
+  }
+
+  get parallel() {
+    return this.#parallel;
+  }
+
+  /** Perspective, or parallel lines; what is at the centre keeps its size. */
+  set parallel(parallel) {
+    this.#parallel = parallel;
+    this.#changed('program');
+  }
+
+  /** From the camera to what it turns around. */
+  get distance() {
+    return this.#camera.position.distanceTo(this.#aim);
+  }
+
+  /** Takes something new to look at. @param {Float32Array} outline a few points of it @param {Axis} up */
+  frame(outline, up) {
+    this.#outline = outline;
+    this.stand(up);
+    this.home({ animated: false });
+    this.#untouched = true;
+  }
+
+  /** @param {Axis} up */
+  stand(up) {
+    this.#root.quaternion.copy(STAND[up]);
+    this.#root.updateMatrixWorld();
+    this.#changed('program');
+  }
+
+  /** Back to the first look, from which everything is seen. */
+  home({ animated = true, by = /** @type {Mover} */ ('program') } = {}) {
+    this.#fit(new Spherical().setFromVector3(FIRST_LOOK), animated, by);
+  }
+
+  /** Along the line of sight to where everything is seen, centred. */
+  fit({ animated = true } = {}) {
+    this.#fit(this.#place, animated);
+  }
+
+  /** Straight at one side, in parallel projection, to where everything is seen. @param {Side} side */
+  lookFrom(side) {
+    this.#parallel = true;
+    const [theta, phi] = SIDES[side];
+    this.#fit(new Spherical(1, phi, theta), true);
+    this.#untouched = false;
+  }
+
+  /** There is something else to look at. What would be cut off is fitted in, unless somebody has looked around. @param {Float32Array} outline */
+  widen(outline) {
+    this.#outline = outline;
+    if (this.#untouched && this.#distanceFrom(this.#place) > MARGIN * this.distance) this.fit({ animated: false });
+  }
+
+  /** The picture has another shape now. Fits again, unless somebody has come nearer or gone farther. @param {() => void} reshape */
+  reshape(reshape) {
+    const place = this.#place;
+    const fitted = Math.abs(place.radius - this.#fitted.radius) < 1e-6;
+    reshape();
+    this.#fitted.radius = this.#distanceFrom(this.#fitted);
+    if (!fitted) return;
+    place.radius = this.#fitted.radius;
+    this.#put(place, this.#aim);
+  }
+
+  /** Turns around it. @param {number} right @param {number} over radians @param {Mover} by */
+  turn(right, over, by) {
+    this.#rest();
+    const place = this.#place;
+    place.theta += right;
+    place.phi = MathUtils.clamp(place.phi - over, 0.01, Math.PI - 0.01);
+    this.#put(place, this.#aim, by);
+  }
+
+  /** @param {number} factor under 1 comes nearer @param {Mover} by */
+  zoom(factor, by) {
+    this.#rest();
+    const place = this.#place;
+    place.radius = MathUtils.clamp(place.radius * factor, NEAREST, FARTHEST);
+    this.#put(place, this.#aim, by);
+  }
+
+  /** @returns {Pose} */
+  get pose() {
+    const { theta, phi, radius } = this.#place;
+    return { azimuth: MathUtils.radToDeg(theta), elevation: 90 - MathUtils.radToDeg(phi), zoom: this.#fitted.radius / radius };
+  }
+
+  /** Goes on with a movement under way; once before each frame. @param {number} now */
+  update(now) {
+    const passed = Math.min(100, now - this.#last);
+    this.#last = now;
+    if (this.#flight) this.#fly(this.#flight);
+    else if (this.turning) this.#drift(passed);
+    if (this.#controls) {
+      this.#controls.enableDamping = !calm().wanted;
+      this.#updating = true;
+      this.#controls.update();
+      this.#updating = false;
+    }
+    const distance = this.#camera.position.length();
+    this.#camera.near = this.#parallel ? distance - 1 : Math.max(distance * 0.005, distance - 1);
+    this.#camera.far = distance + 1;
+    this.#camera.updateProjectionMatrix();
+    if (this.#parallel) flatten(this.#camera, this.distance);
+  }
+
+  /** @param {number} passed milliseconds */
+  #drift(passed) {
+    const place = this.#place;
+    if (performance.now() >= this.#restUntil) place.theta += TURN_PER_MS * passed;
+    this.#put(place, this.#aim);
+  }
+
+  /** Moves the camera to where everything is seen from there. @param {Spherical} to @param {boolean} animated @param {Mover} [by] */
+  #fit(to, animated, by = 'program') {
+    to.radius = this.#distanceFrom(to);
+    this.#fitted = to.clone();
+    this.#flight = null;
+    if (!animated || calm().wanted) return this.#put(to, new Vector3(), by);
+    this.#restUntil = performance.now() + REST_MS;
+    const from = this.#place;
+    to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI)); // the short way
+    this.#flight = { from, to, target: this.#aim.clone(), start: performance.now(), by };
+    this.#changed(by);
+  }
+
+  /** @param {Flight} flight */
+  #fly({ from, to, target, start, by }) {
+    const t = Math.min(1, (performance.now() - start) / FLIGHT_MS);
+    const eased = 1 - (1 - t) ** 3;
+    const between = (/** @type {'radius' | 'phi' | 'theta'} */ part) => MathUtils.lerp(from[part], to[part], eased);
+    const place = new Spherical(between('radius'), between('phi'), between('theta'));
+    if (t === 1) this.#flight = null;
+    this.#put(place, target.clone().multiplyScalar(1 - eased), by);
+  }
+
+  /** A hand is on it: what moves by itself rests. */
+  #rest() {
+    this.#flight = null;
+    this.#untouched = false;
+    this.#restUntil = performance.now() + REST_MS;
+  }
+
+  get #aim() {
+    return this.#controls?.target ?? this.#target;
+  }
+
+  get #place() {
+    return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#aim));
+  }
+
+  /** @param {Spherical} place @param {Vector3} target @param {Mover} [by] */
+  #put(place, target, by = 'program') {
+    this.#aim.copy(target);
+    this.#camera.position.setFromSpherical(place).add(target);
+    this.#camera.lookAt(target);
+    this.#mover = by;
+    this.#changed(by);
+  }
+
+  /** From where everything is seen; of what turns, all its sides. @param {Spherical} place */
+  #distanceFrom({ theta, phi }) {
+    let distance = NEAREST;
+    for (let k = 0; k < (this.turning ? VIEWS : 1); k++) {
+      const direction = new Vector3().setFromSphericalCoords(1, phi, theta + (2 * Math.PI * k) / VIEWS);
+      distance = Math.max(distance, this.#distanceToFit(direction));
+    }
+    return distance;
+  }
+
+  /** The smallest distance from which every point of the outline is inside the picture. @param {Vector3} direction */
+  #distanceToFit(direction) {
+    const tanY = Math.tan(MathUtils.degToRad(this.#camera.fov) / 2) / MARGIN;
+    const tanX = tanY * this.#camera.aspect;
+    const look = this.#camera.clone();
+    look.position.copy(direction);
+    look.lookAt(0, 0, 0);
+    const toEye = look.quaternion.invert().multiply(this.#root.quaternion.clone());
+    const point = new Vector3();
+    const depth = this.#parallel ? 0 : 1; // in parallel projection nearness makes nothing larger
+    let distance = NEAREST;
+    for (let i = 0; i < this.#outline.length; i += 3) {
+      point.fromArray(this.#outline, i).applyQuaternion(toEye);
+      const needed = depth * point.z + Math.max(Math.abs(point.x) / tanX, Math.abs(point.y) / tanY);
+      if (needed > distance) distance = needed;
+    }
+    return distance;
+  }
+}
+
+/**
+ * Turns a perspective projection into the parallel one that shows what is `distance` away at the same size. The camera stays what
+ * it is to everything that moves it.
+ * @param {import('three').PerspectiveCamera} camera
+ * @param {number} distance
+ */
+function flatten({ near, far, projectionMatrix, projectionMatrixInverse }, distance) {
+  const e = projectionMatrix.elements;
+  // x and y are divided by the distance instead of the depth; an off-centre view shifts by as much.
+  e[0] /= distance;
+  e[5] /= distance;
+  [e[12], e[13]] = [-e[8], -e[9]];
+  e[8] = e[9] = 0;
+  e[10] = -2 / (far - near);
+  e[14] = -(far + near) / (far - near);
+  e[11] = 0;
+  e[15] = 1;
+  projectionMatrixInverse.copy(projectionMatrix).invert();
+}

@@ -1,0 +1,387 @@
+/** A viewer: a canvas, what it shows, and how one moves around that. */
+import { PerspectiveCamera, Scene } from 'three';
+import { COLORS } from './colors.js';
+import { frameOf } from './frame.js';
+import { MOVES, listenToKeys } from './keyboard.js';
+import { Orbit } from './orbit.js';
+import { sharedPainter } from './painter.js';
+import { Size } from './size.js';
+import { ALWAYS, Stage } from './stage.js';
+import { likelyUp } from './upright.js';
+import { inSight } from './watching.js';
+
+/**
+ * @import { Axis, Drawable, Frame, Insets, LayerColors, Model, Mover, Paint, Placed, Split, Viewer, ViewerOptions } from '../viewer.js'
+ * @import { Parts } from './glb.js'
+ */
+
+/** How much of the depth pass measured values get: colours are to be read. */
+const MEASURED_DOME = 0.3;
+/** At least this share of the height, and of the width, is the picture's own. */
+const FREE = 0.6;
+const NO_INSETS = { top: 0, right: 0, bottom: 0, left: 0 };
+
+/** The frame of what comes in it. @type {Frame} */
+const ITSELF = { center: [0, 0, 0], size: [1, 1, 1], diagonal: 1 };
+
+/** @param {HTMLCanvasElement} canvas @param {ViewerOptions} [options] @returns {Viewer} */
+export function createViewer(canvas, options) {
+  return new CanvasViewer(canvas, options);
+}
+
+class CanvasViewer extends EventTarget {
+  width = 0;
+  height = 0;
+  ratio = 1;
+  scene = new Scene();
+  camera = new PerspectiveCamera(32, 1, 0.01, 10);
+  context;
+  /** @type {import('./painter.js').Side[]} */
+  sides = [];
+  #canvas;
+  #painter = sharedPainter();
+  #stage;
+  #orbit;
+  #size;
+  /** @type {Frame | null} */
+  #frame = null;
+  /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'file' | 'origin'>} */
+  #first = {};
+  /** @type {string | Split} */
+  #view = 'points';
+  /** @type {Axis | 'auto'} */
+  #up;
+  /** @type {Insets} */
+  #insets = NO_INSETS;
+  #seen = true;
+  #awake = false;
+  /** Who has moved since the last frame. @type {Mover | null} */
+  #moved = null;
+
+  /** @param {HTMLCanvasElement} canvas @param {ViewerOptions} [options] */
+  constructor(canvas, { interactive = true, keys = true, embedded = true, autoRotate = false, up = 'auto', colors = {}, insets = {} } = {}) {
+    super();
+    this.#canvas = canvas;
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    this.#stage = new Stage({ ...COLORS, ...colors });
+    this.scene.add(this.#stage.root);
+    this.#orbit = new Orbit(this.camera, this.#stage.root, canvas, embedded, (by) => {
+      this.#moved = by;
+      this.#ask();
+    });
+    this.#size = new Size(canvas, (size) => this.#resize(size));
+    this.#up = up;
+    this.#insets = { ...NO_INSETS, ...insets };
+    this.interactive = interactive;
+    this.autoRotate = autoRotate;
+    if (keys) {
+      if (interactive && !canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
+      /** @type {import('./keyboard.js').Hands} */
+      const hands = {
+        turn: (right, over) => this.#orbit.turn(right, over, 'keys'),
+        zoom: (factor) => this.#orbit.zoom(factor, 'keys'),
+        home: () => this.#orbit.home({ by: 'keys' }),
+      };
+      listenToKeys(canvas, MOVES, () => (this.interactive && this.#frame ? hands : undefined));
+    }
+    this.resume();
+  }
+
+  /** Shows a cloud, a mesh or a GLB alone, whole, from the first look. @param {Drawable | Model} what @param {{ frame?: Frame }} [options] */
+  show(what, { frame } = {}) {
+    this.clear();
+    if ('kind' in what) {
+      const { scene, layers, outline } = /** @type {Model & Parts} */ (what);
+      this.#frame = ITSELF;
+      this.#first = {};
+      this.#stage.root.add(scene);
+      Object.entries(layers).forEach(([name, objects], i) => this.#stage.add(name, objects, i ? new Float32Array() : outline));
+      this.#view = 'mesh' in layers ? 'mesh' : 'points';
+      this.#divide();
+      this.#orbit.frame(outline, this.upright);
+    } else {
+      this.#frame = frame ?? null;
+      this.set(what.indices ? 'mesh' : 'points', what);
+    }
+  }
+
+  /** Replaces a layer, or removes it. The first of all is shown. @param {string} name @param {Drawable | null} what */
+  set(name, what) {
+    if (!what && !this.#frame) return;
+    const first = this.#stage.layers.size === 0;
+    this.#frame ??= frameOf(/** @type {Drawable} */ (what));
+    this.#stage.set(name, what, this.#frame);
+    if (what && first) {
+      const { up, file, origin } = what;
+      this.#first = { up, file, origin };
+      this.#orbit.frame(this.#stage.outline, this.upright);
+      this.view = name;
+    } else this.#orbit.widen(this.#stage.outline);
+    this.#ask();
+  }
+
+  /** @param {string} name */
+  has(name) {
+    return this.#stage.layers.has(name);
+  }
+
+  get layers() {
+    return [...this.#stage.layers.keys()];
+  }
+
+  /** @param {string} name */
+  size(name) {
+    const { objects = [], points: bare = true } = this.#stage.layers.get(name) ?? {};
+    let [points, triangles] = [0, 0];
+    for (const { geometry } of objects) {
+      const vertices = geometry.getAttribute('position');
+      points += vertices.count;
+      if (!bare) triangles += Math.floor((geometry.index ?? vertices).count / 3);
+    }
+    return { points, triangles };
+  }
+
+  get view() {
+    return this.#view;
+  }
+
+  set view(view) {
+    this.#view = view;
+    this.#divide();
+    this.#ask();
+  }
+
+  /** @param {string} name @param {Paint} how */
+  paint(name, how) {
+    this.#stage.paint(name, how);
+    this.#ask();
+  }
+
+  /** @param {boolean} shown */
+  showEdges(shown) {
+    this.#stage.showEdges(shown);
+    this.#ask();
+  }
+
+  /** @param {Placed | null} corners the lowest and the highest of each box */
+  showBoxes(corners) {
+    if (!this.#frame) return;
+    this.#stage.showBoxes(corners, this.#frame);
+    this.#ask();
+  }
+
+  /** @returns {LayerColors} */
+  get colors() {
+    return this.#stage.colors;
+  }
+
+  /** @param {Partial<LayerColors>} colors */
+  set colors(colors) {
+    this.#stage.colors = { ...this.#stage.colors, ...colors };
+    this.#ask();
+  }
+
+  /** @returns {Insets} */
+  get insets() {
+    return this.#insets;
+  }
+
+  /** @param {Partial<Insets>} insets */
+  set insets(insets) {
+    this.#insets = { ...this.#insets, ...insets };
+    this.#reshape();
+  }
+
+  get up() {
+    return this.#up;
+  }
+
+  set up(up) {
+    this.#up = up;
+    if (!this.#frame) return;
+    this.#orbit.stand(this.upright);
+    this.#orbit.fit();
+  }
+
+  get upright() {
+    if (this.#up !== 'auto') return this.#up;
+    return likelyUp(this.#first, this.#frame?.size ?? [1, 1, 1]);
+  }
+
+  get interactive() {
+    return this.#orbit.enabled;
+  }
+
+  set interactive(interactive) {
+    this.#orbit.enable(interactive);
+  }
+
+  get autoRotate() {
+    return this.#orbit.autoRotate;
+  }
+
+  set autoRotate(turns) {
+    this.#orbit.autoRotate = turns;
+  }
+
+  get parallel() {
+    return this.#orbit.parallel;
+  }
+
+  set parallel(parallel) {
+    this.#orbit.parallel = parallel;
+  }
+
+  get pose() {
+    return this.#orbit.pose;
+  }
+
+  /** @param {number} right @param {number} over radians */
+  turn(right, over) {
+    this.#orbit.turn(right, over, 'program');
+  }
+
+  /** @param {number} factor */
+  zoom(factor) {
+    this.#orbit.zoom(factor, 'program');
+  }
+
+  home() {
+    this.#orbit.home();
+  }
+
+  fit() {
+    this.#orbit.fit();
+  }
+
+  /** @param {import('../viewer.js').Side} side */
+  lookFrom(side) {
+    this.#orbit.lookFrom(side);
+  }
+
+  /** @param {string} [type] @param {number} [quality] */
+  toBlob(type, quality) {
+    this.draw();
+    return new Promise((/** @type {(blob: Blob | null) => void} */ resolve) => this.#canvas.toBlob(resolve, type, quality));
+  }
+
+  /** At once, whether it is seen or not. */
+  draw() {
+    this.#draw(performance.now());
+  }
+
+  clear() {
+    this.#stage.clear();
+    this.#frame = null;
+    this.context.clearRect(0, 0, this.width, this.height);
+  }
+
+  suspend() {
+    this.#awake = false;
+    this.#painter.delete(this);
+    this.#orbit.listen(false);
+    this.#size.stop();
+    inSight().delete(this.#canvas);
+    this.#stage.free();
+  }
+
+  resume() {
+    if (this.#awake) return;
+    this.#awake = true;
+    this.#painter.add(this);
+    this.#orbit.listen(true);
+    this.#size.follow();
+    inSight().add(this.#canvas, (seen) => {
+      this.#seen = seen;
+      if (seen) this.#ask();
+    });
+  }
+
+  dispose() {
+    this.suspend();
+    this.clear();
+  }
+
+  /** One frame of the painter's loop. @param {number} now */
+  frame(now) {
+    if (this.#seen) this.#draw(now);
+  }
+
+  /** Readies scene and camera for a layer; says how strong its depth pass is. @param {string} name */
+  prepare(name) {
+    const layer = this.#stage.layers.get(name);
+    this.camera.layers.set(layer?.bit ?? ALWAYS);
+    this.camera.layers.enable(ALWAYS);
+    if (!layer?.points) return 0;
+    const { parallel, distance } = this.#orbit;
+    const perUnit = (this.camera.projectionMatrix.elements[5] * this.height) / 2;
+    let dome = 1;
+    for (const { material } of layer.objects) {
+      const { uniforms } = /** @type {import('three').ShaderMaterial} */ (material);
+      uniforms.pixelsPerUnit.value = parallel ? perUnit * distance : perUnit;
+      uniforms.distance.value = distance;
+      uniforms.smallest.value = 1.5 * this.ratio;
+      if (uniforms.measured.value) dome = MEASURED_DOME;
+    }
+    return dome;
+  }
+
+  /** @param {boolean} lost */
+  contextChanged(lost) {
+    this.dispatchEvent(new Event(lost ? 'contextlost' : 'contextrestored'));
+  }
+
+  /** @param {number} now */
+  #draw(now) {
+    this.#orbit.update(now);
+    if (this.sides.some(({ layer }) => this.has(layer))) this.#painter.paint(this);
+    if (!this.#moved) return;
+    const by = this.#moved;
+    this.#moved = null;
+    this.dispatchEvent(new CustomEvent('move', { detail: { by } }));
+  }
+
+  #ask() {
+    this.#painter.ask(this);
+  }
+
+  /** @param {import('./size.js').Pixels} size */
+  #resize({ width, height, ratio }) {
+    if (width === this.width && height === this.height && ratio === this.ratio) return;
+    Object.assign(this, { width, height, ratio });
+    this.#reshape();
+  }
+
+  /** The picture is as large as the free part of the canvas, and centred in it. */
+  #reshape() {
+    const { width, height, ratio } = this;
+    if (!width || !height) return;
+    const [left, right] = this.#kept(this.#insets.left, this.#insets.right, width);
+    const [top, bottom] = this.#kept(this.#insets.top, this.#insets.bottom, height);
+    const [across, free] = [width - left - right, height - top - bottom];
+    this.#orbit.reshape(() => {
+      this.camera.aspect = across / free;
+      this.camera.setViewOffset(across, free, -left, -top, width, height);
+    });
+    this.#divide();
+    this.draw();
+  }
+
+  /** Insets in device pixels, less where they would take too much. @param {number} before @param {number} after @param {number} whole */
+  #kept(before, after, whole) {
+    const share = Math.min(this.ratio, ((1 - FREE) * whole) / (before + after || 1));
+    return [before * share, after * share];
+  }
+
+  /** What is drawn where. */
+  #divide() {
+    const { width } = this;
+    if (typeof this.#view === 'string') {
+      this.sides = [{ layer: this.#view, from: 0, to: width }];
+      return;
+    }
+    const { left, right, at } = this.#view;
+    const border = Math.round(width * Math.min(1, Math.max(0, at)));
+    this.sides = [{ layer: left, from: 0, to: border }, { layer: right, from: border, to: width }];
+  }
+}

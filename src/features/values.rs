@@ -1,0 +1,38 @@
+//! What is known of every point.
+
+use crate::cloud::octree::Octree;
+use crate::features::noise::quantile;
+use glam::Vec3;
+
+/// Per-point features in the octree's (Morton) order; lengths in the unit frame.
+#[derive(Debug, Clone)]
+pub struct Features {
+    /// Wanted distance of neighbours on the surface, √(area a point), from how many neighbours a disc holds.
+    pub spacing: Vec<f32>,
+    /// Unit normal of arbitrary sign, filtered; zero where there is none.
+    pub normals: Vec<Vec3>,
+    /// √(κ1² + κ2²) of the principal curvatures, from how the normals turn, 1/length; 1/support at most.
+    pub curvature: Vec<f32>,
+    /// Surface variation λ0/(λ0+λ1+λ2) of the neighbours, 0 (flat) to 1/3 (Pauly, Gross, Kobbelt, "Efficient
+    /// simplification of point-sampled surfaces", 2002).
+    pub variation: Vec<f32>,
+    /// Signed distance of the point to the surface, along its normal, 0 without noise: `point - residual * normal` is denoised.
+    pub residual: Vec<f32>,
+    /// Estimated standard deviation of the noise across the surface.
+    pub noise: f32,
+    /// The part of it that comes from rounded coordinates ([`crate::features::steps`]), which a reduction does not average
+    /// away; 0 where they were not rounded.
+    pub steps: f32,
+}
+
+impl Features {
+    /// Point `i` of the tree, moved onto the surface.
+    pub fn denoised(&self, tree: &Octree, i: usize) -> Vec3 {
+        tree.points[i] - self.residual[i] * self.normals[i]
+    }
+
+    /// Median of the spacing.
+    pub fn median_spacing(&self) -> f32 {
+        quantile(self.spacing.clone(), 2)
+    }
+}

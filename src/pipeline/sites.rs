@@ -1,0 +1,123 @@
+//! The points that a surface is fitted to: the reduced cloud, or all points where that would be too few.
+
+use crate::base::error::Result;
+use crate::base::params::{ReduceParams, SurfaceParams, Target};
+use crate::base::progress::Progress;
+use crate::cloud::copies::copies;
+use crate::cloud::octree::Octree;
+use crate::cloud::{Cloud, in_frame};
+use crate::features::Features;
+use crate::features::noise::Scales;
+use crate::fit::cells::Sites;
+use crate::orient::evidence::Evidence;
+use crate::reduce::{self, Reduced};
+use glam::Vec3;
+
+/// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
+const MIN_REDUCED: usize = 64;
+
+/// The reduced cloud, where its points are for the fit, and what is known of their outer side.
+pub(crate) type Reduction = (Reduced, Vec<Vec3>, Evidence);
+
+/// The reduced cloud that surfaces are fitted to, and where its points are for that.
+pub(crate) fn points_to_fit(
+    cloud: &Cloud,
+    tree: &Octree,
+    mut features: Features,
+    params: &SurfaceParams,
+    progress: &mut dyn Progress,
+) -> Result<Reduction> {
+    let n = tree.points.len();
+    let is_few = |count: usize| count < MIN_REDUCED.min(n);
+    if let Some(params) = &params.reduce {
+        let count = params.target.count(n);
+        if !count.is_some_and(is_few) {
+            // The validity index may choose fewer centres, and a tolerance or a flatness any number: then the features are
+            // asked again.
+            let spare = count
+                .is_none_or(|count| count < 2 * MIN_REDUCED)
+                .then(|| features.clone());
+            let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
+            match spare {
+                Some(spare) if is_few(reduced.cloud.len()) => features = spare,
+                _ => {
+                    let positions = reduced.cloud.points.clone();
+                    let evidence = evidence(cloud, tree, &reduced);
+                    return Ok((reduced, positions, evidence));
+                }
+            }
+        }
+    }
+    let all = ReduceParams {
+        target: Target::Ratio(1.0),
+        assignment: params.reduce.as_ref().is_some_and(|r| r.assignment),
+        cells: params.reduce.as_ref().is_some_and(|r| r.cells),
+        ..Default::default()
+    };
+    let positions = (0..n).map(|i| features.denoised(tree, i)).collect();
+    let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
+    if params.reduce.is_some() {
+        reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
+    }
+    let evidence = evidence(cloud, tree, &reduced);
+    Ok((reduced, positions, evidence))
+}
+
+fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
+    Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
+}
+
+/// What is known of the input's noise: standard deviations across the surface, in the unit frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Noise {
+    pub(crate) all: f32,
+    /// See [`Features::steps`].
+    steps: f32,
+}
+
+impl Noise {
+    pub(crate) fn of(features: &Features) -> Noise {
+        Noise {
+            all: features.noise,
+            steps: features.steps,
+        }
+    }
+}
+
+/// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for
+/// the area of all.
+pub(crate) fn sites(
+    reduced: &Reduced,
+    positions: &[Vec3],
+    input: Noise,
+    orient: bool,
+    progress: &mut dyn Progress,
+) -> Result<(Sites, Vec<Option<u32>>)> {
+    // Points that the unit frame leaves out are no part of a surface.
+    let framed: Vec<u32> = (0..positions.len() as u32)
+        .filter(|&i| in_frame(positions[i as usize]))
+        .collect();
+    let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
+    let all = Octree::build(&inside);
+    let copies = copies(&all.points);
+    let distinct: Vec<Vec3> = copies.iter().map(|c| all.points[c.start]).collect();
+    let index = |k: usize| framed[all.order[k] as usize];
+    let mut site_of = vec![None; positions.len()];
+    let mut tree = Octree::build(&distinct);
+    let mut spacing = Vec::with_capacity(distinct.len());
+    for (site, c) in tree.order.iter_mut().enumerate() {
+        let copies = copies[*c as usize].clone();
+        *c = index(copies.start);
+        spacing.push(reduced.spacing[*c as usize] * (copies.len() as f32).sqrt());
+        for k in copies {
+            site_of[index(k) as usize] = Some(site as u32);
+        }
+    }
+    drop(all);
+    let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
+    let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
+    // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
+    let noise = Scales::measure(&tree).noise.min(input.all).max(input.steps);
+    let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
+    Ok((sites, site_of))
+}

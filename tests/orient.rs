@@ -1,0 +1,51 @@
+//! Which side is out, on scans whose outer side is known.
+
+mod common;
+
+use common::scenes::{Sure, all};
+use pointweave::SurfaceParams;
+
+#[test]
+fn every_scene_is_right_side_out() {
+    let only = std::env::var("SCENES").unwrap_or_default();
+    let mut failures = Vec::new();
+    for recipe in all()
+        .iter()
+        .filter(|r| r.name.contains(&only) || r.kind.contains(&only))
+    {
+        let mut line = format!("{:20} {:45}", recipe.kind, recipe.name);
+        for seed in 0..std::env::var("SEEDS").map_or(8, |s| s.parse().unwrap()) {
+            let scene = recipe.scene(seed);
+            let surface = scene.surface(&SurfaceParams::default());
+            let right = scene.right(&surface);
+            let doubts = &surface.report.reduce.doubts;
+            let least = match scene.sure {
+                Sure::Closed => right >= 0.999 && doubts.is_empty(),
+                Sure::Told => right >= 0.99,
+                Sure::Guess => right.max(1.0 - right) >= 0.999 && !doubts.is_empty(),
+            };
+            let codes: Vec<&str> = doubts.iter().map(|d| d.code).collect();
+            line += &format!(
+                " {}{right:.4}{}",
+                if least { "" } else { "!" },
+                if codes.is_empty() {
+                    String::new()
+                } else {
+                    format!("{codes:?}")
+                }
+            );
+            if std::env::var("SHOW").is_ok() {
+                println!(
+                    "{} {:?} {:?}",
+                    recipe.name, surface.report.orientation, surface.report.reduce.ms
+                );
+            }
+            if !least {
+                failures.push(format!("{} {seed}", recipe.name));
+            }
+        }
+        println!("{line}");
+    }
+    println!("{} failures", failures.len());
+    assert!(failures.is_empty(), "{failures:?}");
+}
