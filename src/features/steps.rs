@@ -128,7 +128,7 @@ mod tests {
         let scattered = |_: usize, rng: &mut Rng| [rng.uniform(), rng.uniform()];
         let raster = |i: usize, _: &mut Rng| [(i % 100) as f64 / 100.0, (i / 100) as f64 / 100.0];
         let lines = |i: usize, rng: &mut Rng| [rng.uniform(), (i % 20) as f64 / 20.0];
-        for step in [0.004, 0.01] {
+        for step in [0.015, 0.03] {
             let expected = step / 12f64.sqrt();
             for tree in [
                 relief(10_000, scattered, step),

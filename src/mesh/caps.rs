@@ -264,7 +264,7 @@ mod tests {
         assert!(lid().count() > 20);
         for v in lid().map(|v| v.as_dvec3()) {
             let saddle = 0.3 + 0.05 * (v.x * v.x - v.y * v.y) / 0.09;
-            assert!((v.z - saddle).abs() < 0.006, "{v} {saddle}");
+            assert!((v.z - saddle).abs() < 0.01, "{v} {saddle}");
         }
     }
 
