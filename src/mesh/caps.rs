@@ -15,6 +15,9 @@ const SWEEPS: usize = 400;
 /// The sweeps end when nothing moves by more than this share of the rim's diameter.
 const SETTLED: f64 = 1e-7;
 
+/// Vertices whose weights add up to less stay where they are: in a cap that crosses itself.
+const LEAST: f64 = 0.1;
+
 /// A closed loop of boundary edges: its vertices in the order in which the triangles beside it run through them.
 pub(crate) type Rim = Vec<u32>;
 
@@ -126,11 +129,18 @@ fn cap(mesh: &mut Mesh, rim: &[u32], taken: &[u64]) {
 
 /// The membrane, by over-relaxation.
 fn settle<F: Fn(u32, u32) -> bool>(disc: &mut Disc<F>, rim: usize) {
-    let mut near: Vec<Vec<u32>> = vec![Vec::new(); disc.at.len() - rim];
-    for (a, b) in disc.inner_edges() {
-        for (v, w) in [(a, b), (b, a)] {
-            if let Some(near) = (v as usize).checked_sub(rim).map(|v| &mut near[v]) {
-                near.push(w);
+    // The cotangents of the angles opposite to each edge, in the plane: of a Delaunay triangulation their sums are positive.
+    let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); disc.at.len() - rim];
+    for &[a, b, c] in &disc.triangles {
+        for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+            let apex = disc.at[c as usize].truncate();
+            let [u, v] = [a, b].map(|v| disc.at[v as usize].truncate() - apex);
+            let cotangent =
+                (u.dot(v) / u.perp_dot(v).abs().max(f64::MIN_POSITIVE)).clamp(-10.0, 10.0);
+            for (v, w) in [(a, b), (b, a)] {
+                if let Some(near) = (v as usize).checked_sub(rim).map(|v| &mut near[v]) {
+                    near.push((w, cotangent));
+                }
             }
         }
     }
@@ -144,8 +154,14 @@ fn settle<F: Fn(u32, u32) -> bool>(disc: &mut Disc<F>, rim: usize) {
     for _ in 0..SWEEPS {
         let mut most: f64 = 0.0;
         for (v, near) in (rim..).zip(&near) {
-            let height = near.iter().map(|&w| disc.at[w as usize].z).sum::<f64>();
-            let step = height / near.len() as f64 - disc.at[v].z;
+            let total = near.iter().map(|(_, weight)| weight).sum::<f64>();
+            if total < LEAST {
+                continue;
+            }
+            let height = near
+                .iter()
+                .map(|&(w, weight)| weight * disc.at[w as usize].z);
+            let step = height.sum::<f64>() / total - disc.at[v].z;
             disc.at[v].z += 1.5 * step;
             most = most.max(step.abs());
         }
