@@ -158,6 +158,8 @@ export interface SurfaceReport extends ReduceReport {
   nonManifoldEdges: number;
   /** One number a closed component. */
   genus: number[];
+  /** Holes that were closed and rims that were left open, the widest first. */
+  holes: Hole[];
   /** How often a sub-domain was split because its fit was not within the accuracy. */
   refinements: number;
   /** Of the fit at the input points. */

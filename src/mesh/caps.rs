@@ -9,14 +9,15 @@ use crate::base::lists::{pack, unpack};
 use crate::mesh::Mesh;
 use crate::mesh::disc::Disc;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Sweeps that settle the heights.
 const SWEEPS: usize = 400;
 /// The sweeps end when nothing moves by more than this share of the rim's diameter.
 const SETTLED: f64 = 1e-7;
 
-/// Vertices whose weights add up to less stay where they are: in a cap that crosses itself.
-const LEAST: f64 = 0.1;
+/// Largest weight of an edge, and one over the least.
+const MOST: f64 = 10.0;
 
 /// A closed loop of boundary edges: its vertices in the order in which the triangles beside it run through them.
 pub(crate) type Rim = Vec<u32>;
@@ -128,19 +129,23 @@ fn cap(mesh: &mut Mesh, rim: &[u32], taken: &[u64]) {
 }
 
 /// The membrane, by over-relaxation.
-fn settle<F: Fn(u32, u32) -> bool>(disc: &mut Disc<F>, rim: usize) {
-    // The cotangents of the angles opposite to each edge, in the plane: of a Delaunay triangulation their sums are positive.
-    let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); disc.at.len() - rim];
+fn settle(disc: &mut Disc<impl Fn(u32, u32) -> bool>, rim: usize) {
+    // Half of the cotangents of the angles opposite to each inner edge, in the plane: in a Delaunay triangulation their sums are
+    // positive. Where they are not, as a cap crosses itself, a membrane of any weights will do.
+    let mut weights: BTreeMap<(u32, u32), f64> = BTreeMap::new();
     for &[a, b, c] in &disc.triangles {
         for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
             let apex = disc.at[c as usize].truncate();
             let [u, v] = [a, b].map(|v| disc.at[v as usize].truncate() - apex);
-            let cotangent =
-                (u.dot(v) / u.perp_dot(v).abs().max(f64::MIN_POSITIVE)).clamp(-10.0, 10.0);
-            for (v, w) in [(a, b), (b, a)] {
-                if let Some(near) = (v as usize).checked_sub(rim).map(|v| &mut near[v]) {
-                    near.push((w, cotangent));
-                }
+            let cotangent = u.dot(v) / u.perp_dot(v).abs().max(f64::MIN_POSITIVE);
+            *weights.entry((a.min(b), a.max(b))).or_default() += cotangent.clamp(-MOST, MOST);
+        }
+    }
+    let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); disc.at.len() - rim];
+    for ((a, b), weight) in weights {
+        for (v, w) in [(a, b), (b, a)] {
+            if let Some(near) = (v as usize).checked_sub(rim).map(|v| &mut near[v]) {
+                near.push((w, weight.max(1.0 / MOST)));
             }
         }
     }
@@ -155,9 +160,6 @@ fn settle<F: Fn(u32, u32) -> bool>(disc: &mut Disc<F>, rim: usize) {
         let mut most: f64 = 0.0;
         for (v, near) in (rim..).zip(&near) {
             let total = near.iter().map(|(_, weight)| weight).sum::<f64>();
-            if total < LEAST {
-                continue;
-            }
             let height = near
                 .iter()
                 .map(|&(w, weight)| weight * disc.at[w as usize].z);
@@ -282,6 +284,25 @@ mod tests {
             let saddle = 0.3 + 0.05 * (v.x * v.x - v.y * v.y) / 0.09;
             assert!((v.z - saddle).abs() < 0.01, "{v} {saddle}");
         }
+    }
+
+    #[test]
+    fn a_rim_that_crosses_itself_gets_a_disc_near_it() {
+        // A figure of eight in the plane, which passes over itself.
+        let n = 200;
+        let at = |i: usize| {
+            let angle = std::f64::consts::TAU * i as f64 / n as f64;
+            0.3 * DVec2::new(libm::sin(angle), libm::sin(2.0 * angle))
+        };
+        let outline: Vec<DVec2> = (0..n).map(at).collect();
+        let height = |i: usize| 0.2 + 0.1 * libm::cos(std::f64::consts::TAU * i as f64 / n as f64);
+        let mesh = closed(wall(&outline, height));
+        let (lo, hi) = (Vec3::new(-0.31, -0.31, -0.01), Vec3::new(0.31, 0.31, 0.31));
+        assert!(
+            mesh.vertices
+                .iter()
+                .all(|v| v.cmpge(lo).all() && v.cmple(hi).all())
+        );
     }
 
     #[test]

@@ -48,11 +48,6 @@ impl<F: Fn(u32, u32) -> bool> Disc<F> {
         disc
     }
 
-    /// The inner edges.
-    pub(crate) fn inner_edges(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.beside.keys().copied()
-    }
-
     /// Enters a triangle beside its edges, while they are gathered.
     fn enter(&mut self, t: u32) {
         for (a, b) in sides(self.triangles[t as usize]) {
@@ -217,14 +212,14 @@ fn sides([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
 }
 
 /// Step 1: the triangles of a polygon that runs counter-clockwise in the plane of the first two coordinates. Where it has no
-/// ear, as it crosses itself, the corner that turns the most goes.
+/// ear, as it crosses itself, its corners go as they come.
 fn ears(at: &[DVec3]) -> Vec<[u32; 3]> {
     let n = at.len();
     let p = |v: u32| at[v as usize].truncate();
     let turn = |a: u32, b: u32, c: u32| (p(b) - p(a)).perp_dot(p(c) - p(b));
     let mut left: Vec<u32> = (0..n as u32).collect();
     let mut triangles = Vec::with_capacity(n - 2);
-    let mut k = 0;
+    let (mut k, mut crossed) = (0, false);
     while left.len() > 3 {
         let count = left.len();
         let around = |k: usize| {
@@ -232,7 +227,8 @@ fn ears(at: &[DVec3]) -> Vec<[u32; 3]> {
             (before, left[k % count], left[(k + 1) % count])
         };
         // A corner that lies in another's ear is a reflex one.
-        let reflex: Vec<u32> = (0..count)
+        let all = if crossed { 0 } else { count };
+        let reflex: Vec<u32> = (0..all)
             .map(around)
             .filter(|&(a, b, c)| turn(a, b, c) <= 0.0)
             .map(|(_, b, _)| b)
@@ -242,19 +238,14 @@ fn ears(at: &[DVec3]) -> Vec<[u32; 3]> {
                 let inner = |a: u32, b: u32| (p(b) - p(a)).perp_dot(p(v) - p(a)) >= 0.0;
                 v != a && v != b && v != c && inner(a, b) && inner(b, c) && inner(c, a)
             };
-            turn(a, b, c) > 0.0 && !reflex.iter().any(inside)
+            turn(a, b, c) > 0.0 && (crossed || !reflex.iter().any(inside))
         };
         let found = (0..count)
             .map(|step| (k + step) % count)
             .find(|&k| is_ear(&around(k)));
-        let ear = found.unwrap_or_else(|| {
-            let turn = |k: &usize| {
-                let (a, b, c) = around(*k);
-                turn(a, b, c)
-            };
-            let most = (0..count).max_by(|a, b| turn(a).total_cmp(&turn(b)).then(b.cmp(a)));
-            most.unwrap_or(0)
-        });
+        // It has none where it crosses itself: any corner does then.
+        crossed |= found.is_none();
+        let ear = found.unwrap_or(0);
         let (a, b, c) = around(ear);
         triangles.push([a, b, c]);
         left.remove(ear);
