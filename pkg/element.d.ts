@@ -2,7 +2,7 @@
  * `<point-weave>`: importing this defines the element. It needs three.js (an optional peer of the package).
  */
 import type { Axis, Pose } from './viewer.js';
-import type { EngineOptions, ErrorCode, PointweaveError, ReduceReport, Stage as EngineStage, SurfaceReport } from './types.js';
+import type { Doubt, EngineOptions, ErrorCode, Orientation, PointweaveError, ReduceReport, Stage as EngineStage, SurfaceReport } from './types.js';
 
 export type { Axis, Pose } from './viewer.js';
 
@@ -36,7 +36,7 @@ export interface ErrorDetail {
   error: PointweaveError;
 }
 
-/** Another `src`, another `ratio` or `count`, the element was removed, or `abort()` was called. */
+/** Another `src`, another `ratio`, `count`, `orientation` or `flip`, the element was removed, or `abort()` was called. */
 export type AbortReason = 'src' | 'target' | 'removed' | 'called';
 
 export interface AbortDetail {
@@ -47,7 +47,7 @@ export interface AbortDetail {
 /** None of them bubbles. */
 export interface PointWeaveEventMap {
   progress: CustomEvent<ProgressDetail>;
-  /** The view asked for is shown, after `src`, `ratio`, `count` or `view` has asked for work. */
+  /** The view asked for is shown, after `src`, `ratio`, `count`, `orientation`, `flip` or `view` has asked for work. */
   load: CustomEvent<LoadDetail>;
   error: CustomEvent<ErrorDetail>;
   /** The job under way was stopped; nothing of it will be shown. */
@@ -74,6 +74,8 @@ export interface Words {
   errors: Partial<Record<ErrorCode, string>> & { other: string };
   progress: (stage: string, percent: number) => string;
   shown: (what: { view: View; points: number; triangles: number }) => string;
+  /** What may be wrong with what is shown: the title of the picture. */
+  doubt: (doubt: Doubt) => string;
   pose: (pose: Pose) => string;
 }
 
@@ -108,8 +110,15 @@ export class PointWeaveElement extends HTMLElement {
   /** Which axis of the file points up. Default `'auto'`: z of what is wide and flat, else y. */
   up: Up;
 
+  /** What decides which side of a scan's mesh is out, as for `reconstruct`. Default `'auto'`. */
+  orientation: Orientation;
+  /** Turns a scan's mesh to its other side. */
+  flip: boolean;
+
   /** Whether the view that is asked for is shown. */
   readonly loaded: boolean;
+  /** Of the reduced cloud or the mesh that is shown, with what may be wrong with it: `report.doubts`; null for points and for a GLB. */
+  readonly report: LoadDetail['report'];
   /** Stops the job under way, if there is one. */
   abort(): void;
   /** Fetches `src` and computes everything once more. */

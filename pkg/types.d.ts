@@ -7,6 +7,7 @@
  */
 
 import type { ReconstructOptions, ReduceOptions } from './types.options.js';
+import type { ReduceReport, SurfaceReport } from './types.reports.js';
 
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
 export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
@@ -29,6 +30,28 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   up?: [number, number, number];
   /** All was seen from high above, along `up` (z without it), as airborne scans are; carried to every reduced cloud. */
   seenFromAbove?: boolean;
+  /** What a coordinate is; carried to every result. */
+  unit?: Unit;
+  /** The reference system of world coordinates, as a LAS file describes it; carried to every result, and written to LAS and LAZ. */
+  crs?: Crs;
+  /** How many faces of a mesh the points were taken from; carried to every result. Measured points have none. */
+  faces?: number;
+}
+
+/** Millimetre, centimetre, metre, inch, foot, foot of the US survey; and the degree of longitude and latitude, which is no length. */
+export type Unit = 'mm' | 'cm' | 'm' | 'in' | 'ft' | 'us-ft' | 'deg';
+
+/** A direction along an axis, or any as three numbers that are not all 0. */
+export type Direction = 'x' | 'y' | 'z' | '-x' | '-y' | '-z' | [number, number, number];
+
+/** A coordinate reference system in the words of a file. */
+export interface Crs {
+  /** Well-known text. */
+  wkt?: string;
+  /** GeoTIFF's keys with their directory, their floating-point values and their texts. */
+  keys?: Uint16Array;
+  doubles?: Float64Array;
+  ascii?: string;
 }
 
 /** Places of a scanner or camera. */
@@ -64,72 +87,7 @@ export interface CallOptions {
 }
 
 export * from './types.options.js';
-
-/** Distances as fractions. */
-export interface Distances {
-  mean: number;
-  rms: number;
-  max: number;
-}
-
-/** Something about a result that may not be as it should. */
-export interface Doubt {
-  /** Stable and meant for programs: {@link DoubtCode}, and more with time. */
-  code: DoubtCode | (string & {});
-  /** A sentence. */
-  message: string;
-  /** The share of the surface that it is about, 0 to 1, where that is known. */
-  share?: number;
-}
-
-export type DoubtCode =
-  /** Nothing says which side is out. */
-  | 'side-guessed'
-  /** Two things that are known of the cloud say different sides. */
-  | 'sources-disagree'
-  /** A region looks away from where it was seen from. */
-  | 'contradicts-sensor'
-  /** A large part hangs on little, and may be the wrong way round. */
-  | 'weak-tie';
-
-/** What ran, where and for how long. */
-export interface RunReport {
-  /** Milliseconds by stage. */
-  ms: Partial<Record<Stage, number>>;
-  totalMs: number;
-  /** The most memory that the WebAssembly instance has had so far; it never shrinks. */
-  peakMemoryBytes: number;
-  build: Build;
-  threads: number;
-  /** Why this build ran, and why something was not done as it was asked for. */
-  reason: string;
-  /** What may not be as it should; empty for what is clear. */
-  doubts: Doubt[];
-}
-
-export interface ReduceReport extends RunReport {
-  /** Of the cloud that was given, those that were dropped too. */
-  inputPoints: number;
-  /** Isolated points that were dropped; all below is about the others. */
-  outliers: number;
-  outputPoints: number;
-  /** Sub-domains of the octree. */
-  cells: number;
-  /** Sweeps of fuzzy c-means; the most in any sub-domain. */
-  iterations: number;
-  /** J of eq. 1 over the whole cloud, in squared diagonals. */
-  objective: number;
-  /** χ of eq. 7 over the whole cloud; 0 where it is not defined: one centre, or two at one place. */
-  validity: number;
-  /** Spread over mean of the distance to the nearest other centre in wanted spacings; 0 is perfectly even. */
-  evenness: number;
-  /** Estimated noise, a fraction. */
-  noise: number;
-  /** Points kept as they were, for a sharp feature. */
-  sharpPoints: number;
-  /** Of the input to the reduced surface. */
-  distance: Distances;
-}
+export * from './types.reports.js';
 
 export interface ReducedCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array>
   extends PointCloud<Positions> {
@@ -150,65 +108,6 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   cells?: Positions;
   report: ReduceReport;
 }
-
-export interface SurfaceReport extends ReduceReport {
-  triangles: number;
-  components: number;
-  boundaryEdges: number;
-  nonManifoldEdges: number;
-  /** One number a closed component. */
-  genus: number[];
-  /** Holes that were closed and rims that were left open, the widest first. */
-  holes: Hole[];
-  /** How often a sub-domain was split because its fit was not within the accuracy. */
-  refinements: number;
-  /** Of the fit at the input points. */
-  residual: Distances;
-  /** Share of the input that stayed beyond the accuracy. */
-  beyondAccuracy: number;
-  /** How far the local functions disagree on which side is out: -1 where all agree, 1 where none do. */
-  orientationEnergy: number;
-  /** The same before conflicts were solved over the whole graph. */
-  orientationEnergyBefore: number;
-  /** What decided which side is out. */
-  orientation: OrientationReport;
-}
-
-/** What decided which side is out. Shares are of the surface, 0 to 1. */
-export interface OrientationReport {
-  /** Every source that said anything, and how far the result agrees with it; the shares add up to 1. */
-  sources: {
-    source: OrientationSource;
-    /** Of what it decided. */
-    share: number;
-    /** Of that about which it says anything, the share where the result agrees. */
-    agreement: number;
-  }[];
-  /** Share whose side is a guess. */
-  guessed: number;
-  /** The part with over 1 % of the surface that hangs on the least. */
-  weakestTie?: {
-    /** Share that would turn. */
-    share: number;
-    /** What holds it to the others, by its size: parts of one smooth sheet have 1.5 and more. */
-    strength: number;
-  };
-}
-
-export type OrientationSource =
-  /** The cloud's own normals. */
-  | 'normals'
-  | 'viewpoints'
-  /** That it was seen from above. */
-  | 'above'
-  /** That it looks as a depth camera at 0 0 0 sees. */
-  | 'camera'
-  /** That it encloses something. */
-  | 'shell'
-  /** The option, or the rule for sheets, that up is out. */
-  | 'up'
-  /** Nothing. */
-  | 'guess';
 
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z of each vertex. */
@@ -261,8 +160,12 @@ export interface FileCloud<Positions extends Float32Array | Float64Array = Float
     dropped: number;
     /** Values of colours, normals and attributes that were NaN or infinite and are now 0. */
     replaced: number;
-    /** Faces that the file has; they are not read. */
+    /** Faces that the file has. */
     faces: number;
+    /** Points that were taken from them; missing where the points are the file's own. */
+    sampled?: number;
+    /** Files that the faces name and that were not there (`beside`), and pictures that are no PNG, JPEG or WebP: their colours are missing. */
+    missing?: string[];
   };
 }
 
@@ -271,7 +174,20 @@ export interface ReadOptions {
   name?: string;
   /** Default: recognised by content, then by name. */
   format?: Format;
+  /**
+   * Of a file with faces: `'sample'` (default) takes points from them, evenly over their area and never close together, four a
+   * triangle, at least 100,000 and at most 2,000,000, with normals, colours (of vertices, faces, materials and textures) and
+   * attributes; `'vertices'` takes the vertices.
+   */
+  faces?: 'sample' | 'vertices';
+  /** The files that a mesh may name, its material library and pictures: those dropped along, or what gives the data of a name. */
+  beside?: Beside;
 }
+
+/** Files by their names, folders and case aside; or a function, which gives `undefined` for what there is not. */
+export type Beside =
+  | File[]
+  | ((name: string) => Blob | ArrayBuffer | Uint8Array | undefined | Promise<Blob | ArrayBuffer | Uint8Array | undefined>);
 
 /** The formats that are written, and what of a result they hold: the others leave out what they have no place for. */
 export type OutputFormat =
@@ -281,20 +197,37 @@ export type OutputFormat =
   | 'xyz'
   /**
    * Binary glTF 2.0: everything. Positions are in single precision, and the origin is the node's translation in double
-   * precision; a cloud in double precision gets an origin near its middle. Axes and unit stay yours. Colours become
-   * linear, attributes `_NAME`; normals are left out where one is zero.
+   * precision; a cloud in double precision gets an origin near its middle. y is up, and the unit is the metre, where the
+   * cloud says its own. Colours become linear, attributes `_NAME`; normals are left out where one is zero.
    */
   | 'glb'
   /** Everything but attributes, in world coordinates as text; colours from 0 to 1 stand behind the coordinates. */
   | 'obj'
-  /** Binary: triangles alone, in single precision. Where there is an origin, the first 80 bytes say `at X Y Z`. */
-  | 'stl';
+  /**
+   * Binary: triangles alone, in single precision. Where there is an origin, the first 80 bytes say `at X Y Z`. z is up, and the
+   * unit is the millimetre, where the cloud says its own.
+   */
+  | 'stl'
+  /** Binary: points with everything, in world coordinates: in double precision where they need it. */
+  | 'pcd'
+  /**
+   * LAS 1.4, point formats 6 to 8, and LAZ: points with everything, in world coordinates, and the reference system. Attributes go to the
+   * fields of their names (`intensity`, `classification` …) where those hold them, else with normals to extra bytes. z is up.
+   */
+  | 'las'
+  | 'laz'
+  /** Triangles and colours; the origin is the item's transform. z is up, and the unit is the millimetre, where the cloud says its own. */
+  | '3mf';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
   format?: OutputFormat;
   /** Of a PLY file. Default `'binary'` (little-endian). */
   encoding?: 'binary' | 'ascii';
+  /** Which way is up in the file: the result is turned there from its own `up`. Default: what the format asks for, or as it is. */
+  up?: Direction;
+  /** The unit of the file: the result is scaled to it from its own. Default: what the format asks for, or as it is. */
+  unit?: Unit;
   /**
    * Of a GLB file: positions in steps of 1/65535 of the longest side and normals in steps of 1/127, which take half the room
    * (`KHR_mesh_quantization`, which viewers read without a decoder). Default `false`.
@@ -335,10 +268,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/` and `e57/`, or the URLs of the wasm files. The last three are
-   * loaded when a file of theirs is read. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `pictures/` and `exports/`, or the URLs of the wasm files.
+   * All but the first two are loaded when a file of theirs is read or written. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; pictures?: string | URL; exports?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.

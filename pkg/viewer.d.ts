@@ -187,6 +187,8 @@ export interface Viewer extends EventTarget {
   fit(): void;
   /** Straight at a side, in parallel projection. */
   lookFrom(side: Side): void;
+  /** The mesh that is seen at a place of the canvas, in CSS pixels from its top left, and which of its triangles; null for none. */
+  pick(x: number, y: number): { layer: string; triangle: number } | null;
   /** Draws at once; else it is drawn before the next frame. */
   draw(): void;
   /** The picture as it is shown, without background. Types and quality as `canvas.toBlob`. */

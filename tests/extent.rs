@@ -233,6 +233,14 @@ fn depth_in_steps_is_a_smooth_surface() {
         let s = surface(&scan(step), &SurfaceParams::default()).unwrap();
         let noise = step / 12f64.sqrt() / s.cloud.reduced.cloud.frame.diagonal;
         assert!((s.report.reduce.noise / noise - 1.0).abs() < 0.02);
+        let said = |code| {
+            s.report
+                .reduce
+                .doubts
+                .iter()
+                .any(|doubt| doubt.code == code)
+        };
+        assert!(said("steps"));
         let vertices: Vec<DVec3> = points(&s.positions_f64()).collect();
         let mut angles: Vec<f64> = s
             .mesh

@@ -264,7 +264,7 @@ fn arrays_of_the_wrong_length_are_not_written() {
     let mut cloud = full_cloud(2);
     cloud.colors = Some(vec![0; 5]);
     for format in Output::ALL {
-        let error = write(&cloud, None, format, WriteOptions::default()).unwrap_err();
+        let error = write(&cloud, None, *format, WriteOptions::default()).unwrap_err();
         assert_eq!(error.code(), "bad-length");
     }
     let error = write(
@@ -281,7 +281,7 @@ fn arrays_of_the_wrong_length_are_not_written() {
 fn triangles_name_points_that_are_there() {
     for format in Output::ALL {
         let corners = Some(&[0, 1, 2, 2, 3, 0][..]);
-        let error = write(&full_cloud(3), corners, format, text(false)).unwrap_err();
+        let error = write(&full_cloud(3), corners, *format, text(false)).unwrap_err();
         assert_eq!((error.code(), error.index()), ("bad-index", Some(4)));
         assert_eq!(error.found().as_deref(), Some("3"));
     }

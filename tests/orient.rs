@@ -14,10 +14,28 @@ fn every_scene_is_right_side_out() {
         .filter(|r| r.name.contains(&only) || r.kind.contains(&only))
     {
         let mut line = format!("{:20} {:45}", recipe.kind, recipe.name);
-        for seed in 0..std::env::var("SEEDS").map_or(8, |s| s.parse().unwrap()) {
+        for seed in std::env::var("SEED").map_or(0, |s| s.parse().unwrap())
+            ..std::env::var("SEEDS").map_or(8, |s| s.parse().unwrap())
+        {
             let scene = recipe.scene(seed);
             let surface = scene.surface(&SurfaceParams::default());
             let right = scene.right(&surface);
+            if std::env::var("SITES").is_ok() {
+                let cloud = &surface.cloud.reduced.cloud;
+                let frame = cloud.frame;
+                let (mut r, mut all) = (0, 0);
+                for (p, n) in cloud.points.iter().zip(cloud.normals.as_ref().unwrap()) {
+                    let q = glam::DVec3::from_array(frame.to_caller(*p));
+                    if let Some(is) = (scene.truth)(q, n.as_dvec3()) {
+                        all += 1;
+                        r += usize::from(is);
+                        if !is {
+                            println!("   wrong at {q:.3} {n:.2}");
+                        }
+                    }
+                }
+                println!("  sites {r} of {all}");
+            }
             let doubts = &surface.report.reduce.doubts;
             let least = match scene.sure {
                 Sure::Closed => right >= 0.999 && doubts.is_empty(),

@@ -6,7 +6,7 @@ mod made;
 
 use glam::DVec3;
 use made::Kept;
-use pointweave::cloud::Viewpoints;
+use pointweave::cloud::{Cloud, Viewpoints};
 use pointweave::formats::{Format, RawCloud, Reading, read};
 
 /// Reads the file whole and in slices, which have to say the same.
@@ -248,4 +248,44 @@ fn what_a_file_says_reaches_the_cloud() {
     let again = RawCloud::of_cloud(&cloud);
     assert!(again.seen_from_above);
     assert_eq!(again.up, Some([0.0, 0.0, 1.0]));
+}
+
+#[test]
+fn a_normal_that_is_zero_or_not_finite_is_none() {
+    let cloud = || Cloud::from_f32(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
+    let normals = [0.0, 0.0, 2.0, f32::NAN, 1.0, 0.0, 0.0, 0.0, 0.0];
+    let expected = vec![glam::Vec3::Z, glam::Vec3::ZERO, glam::Vec3::ZERO];
+    assert_eq!(
+        cloud().with_normals(&normals).unwrap().normals,
+        Some(expected)
+    );
+    for none in [0.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(
+            cloud().with_normals(&[none; 9]).unwrap().normals,
+            None,
+            "{none}"
+        );
+    }
+    assert_eq!(
+        cloud().with_normals(&[1.0; 6]).unwrap_err().code(),
+        "bad-length"
+    );
+}
+
+#[test]
+fn a_selection_keeps_what_is_known_of_its_points() {
+    let positions: Vec<f64> = (0..30).map(f64::from).collect();
+    let views = [0.0, 0.0, 9.0, 5.0, 5.0, 5.0];
+    let of = [0, 1, Viewpoints::UNKNOWN, 1, 0, 0, 1, 1, 0, 0];
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    let cloud = cloud.with_viewpoints(&views, Some(&of)).unwrap();
+    let cloud = cloud
+        .with_up([0.0, 0.0, 3.0])
+        .unwrap()
+        .with_seen_from_above(true);
+    let some = cloud.select(&[1, 2, 4]).unwrap();
+    let viewpoints = some.viewpoints.unwrap();
+    assert_eq!(viewpoints.of, Some(vec![1, Viewpoints::UNKNOWN, 0]));
+    assert_eq!(viewpoints.positions.len(), 2);
+    assert_eq!((some.up, some.seen_from_above), (Some(glam::Vec3::Z), true));
 }

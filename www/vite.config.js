@@ -9,6 +9,29 @@ const isolation = {
   'Cross-Origin-Embedder-Policy': 'require-corp',
 };
 
+/**
+ * The wasm modules that `cargo xtask serve` is still building behind this page. They are left out, and the page says so
+ * (`src/building.js`).
+ */
+const missing = (process.env.POINTWEAVE_BUILDING ?? '').split(',').filter(Boolean);
+
+/** A module that is missing fails when it is loaded; the engine then does without threads, and a reader says why it cannot read. */
+function withoutMissing() {
+  const mark = '\0missing:';
+  return {
+    name: 'pointweave-without-missing',
+    enforce: /** @type {const} */ ('pre'),
+    resolveId(/** @type {string} */ source) {
+      const name = /\/wasm\/(\w+)\/pointweave\.js$/.exec(source)?.[1];
+      return name && missing.includes(name) ? mark + name : undefined;
+    },
+    load(/** @type {string} */ id) {
+      if (!id.startsWith(mark)) return undefined;
+      return `throw new Error('the module ${id.slice(mark.length)} is still being built');`;
+    },
+  };
+}
+
 /** Writes the service worker beside the built page, with the list of all its files. */
 function serviceWorker() {
   let folder = '';
@@ -37,9 +60,11 @@ function serviceWorker() {
 export default defineConfig({
   // Relative addresses: the built page works from any folder of any static server.
   base: './',
-  plugins: [serviceWorker()],
+  // A page that is not whole is not kept for later.
+  plugins: [withoutMissing(), missing.length ? undefined : serviceWorker()],
+  define: { 'import.meta.env.BUILDING': JSON.stringify(missing) },
   // The engine's workers are ES modules and load more modules of their own.
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [withoutMissing()] },
   build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
   // The package is a neighbour of this folder, outside Vite's root.
   // It has no packages of its own: three.js is the page's.

@@ -25,6 +25,7 @@ import { UsageError } from './usage.js';
  * @property {'auto' | number} threads
  * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
  * @property {Record<string, any>} own options of the function that has the command's name
+ * @property {Record<string, any>} read options of `read`
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
  */
@@ -95,8 +96,8 @@ function task(command, values, inputs) {
   if (inputs.length === 0) throw new UsageError(`${command} needs a file`);
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
-  const { own, write } = optionsFrom(command, values);
-  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, write };
+  const { own, read, write } = optionsFrom(command, values);
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), own, read, write };
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;

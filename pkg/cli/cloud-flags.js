@@ -1,30 +1,31 @@
 /** What the command line says of a scan beside its file: where it was seen from, and which way is up. */
+import { AXES, UNITS } from '../engine/axes.js';
 import { UsageError } from './usage.js';
 
 /** @import { PointCloud } from '../types.js' */
 
 /** How `parseArgs` is told of them. */
-export const CLOUD_FLAGS = /** @type {const} */ ({ viewpoint: { type: 'string', multiple: true }, up: { type: 'string' } });
+export const CLOUD_FLAGS = /** @type {const} */ ({ viewpoint: { type: 'string', multiple: true }, up: { type: 'string' }, unit: { type: 'string' } });
 
 /** For the help. */
 export const CLOUD_ROWS = [
   ['--viewpoint X,Y,Z', "a place that it was seen from, in the file's frame, can be repeated: each point was seen from the nearest"],
   ['--up AXIS', 'which way is up: x, y, z, -x, -y, -z or a direction X,Y,Z'],
+  ['--unit NAME', `what a coordinate of the file is: ${UNITS.join(', ')}`],
 ];
-
-/** @type {Record<string, [number, number, number]>} */
-const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y': [0, -1, 0], '-z': [0, 0, -1] };
 
 /**
  * @typedef {object} Said
  * @property {[number, number, number][]} viewpoints
  * @property {[number, number, number]} [up]
+ * @property {import('../types.js').Unit} [unit]
  */
 
-/** @param {{ viewpoint?: string[], up?: string }} values of `parseArgs` @returns {Said} */
-export function cloudSaid({ viewpoint = [], up }) {
+/** @param {{ viewpoint?: string[], up?: string, unit?: any }} values of `parseArgs` @returns {Said} */
+export function cloudSaid({ viewpoint = [], up, unit }) {
+  if (unit !== undefined && !UNITS.includes(unit)) throw new UsageError(`--unit is '${unit}': expected one of ${UNITS.join(', ')}`);
   const viewpoints = viewpoint.map((text) => triple('viewpoint', text, 'three numbers X,Y,Z'));
-  return { viewpoints, up: up === undefined ? undefined : upFrom(up) };
+  return { viewpoints, up: up === undefined ? undefined : upFrom(up), unit };
 }
 
 /** @param {string} text */
@@ -49,10 +50,10 @@ function triple(name, text, expected) {
  * @param {Said} said
  * @returns {T}
  */
-export function withSaid(cloud, { viewpoints, up }) {
+export function withSaid(cloud, { viewpoints, up, unit }) {
   const positions = Float64Array.from(viewpoints.flat());
   const of = viewpoints.length > 1 ? nearest(cloud.positions, positions) : undefined;
-  return { ...cloud, ...(viewpoints.length > 0 && { viewpoints: { positions, of } }), ...(up && { up }) };
+  return { ...cloud, ...(viewpoints.length > 0 && { viewpoints: { positions, of } }), ...(up && { up }), ...(unit && { unit }) };
 }
 
 /** For each point the index of the nearest viewpoint. @param {ArrayLike<number>} points @param {Float64Array} viewpoints */

@@ -2,7 +2,7 @@
 import { randomUUID } from 'node:crypto';
 import { constants, openAsBlob } from 'node:fs';
 import { access, mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
-import { dirname, join } from 'node:path';
+import { basename, dirname, join, relative, sep } from 'node:path';
 import { addAbortSignal } from 'node:stream';
 import { buffer } from 'node:stream/consumers';
 
@@ -25,6 +25,22 @@ const MEANINGS = {
  */
 export function openInput(input, signal) {
   return input === '-' ? buffer(addAbortSignal(signal, process.stdin)) : explained('', open(input, signal));
+}
+
+/**
+ * The bytes of a file in the folder of an input, or in a folder within; a path of another computer is its name alone.
+ * @param {string} input
+ */
+export function besideOf(input) {
+  const folder = input === '-' ? '.' : dirname(input);
+  return async (/** @type {string} */ name) => {
+    const path = name.replaceAll('\\', '/');
+    const inside = [join(folder, path), join(folder, basename(path))].filter((file) => !relative(folder, file).startsWith(`..${sep}`));
+    for (const file of inside) {
+      const bytes = await readFile(file).catch(() => undefined);
+      if (bytes) return bytes;
+    }
+  };
 }
 
 /**

@@ -12,7 +12,7 @@ import { UsageError } from './usage.js';
  * @typedef {object} Flag
  * @property {string} name as it is typed, without the dashes
  * @property {string} key the option's name
- * @property {'target' | 'reduce' | 'reconstruct' | 'write' | 'none'} group
+ * @property {'target' | 'reduce' | 'reconstruct' | 'read' | 'write' | 'none'} group
  * @property {Rule} rule
  * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
  * @property {string} words what it does, in one line
@@ -21,6 +21,9 @@ import { UsageError } from './usage.js';
 /** What each flag does, by its option's name. An option without words has no flag. @type {Record<string, string>} */
 export const WORDS = {
   ...FLAGS,
+  faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
+  up: 'which way is up in the result; default: what its format asks for',
+  unit: 'the unit of the result; default: what its format asks for',
   encoding: 'of a PLY file',
   quantize: 'a GLB file with positions rounded to 1/65535 and normals to 1/127, in half the room',
   meshopt: 'a compressed GLB file; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer',
@@ -31,12 +34,13 @@ export const WORDS = {
  * @returns {Flag[]}
  */
 export function flagsOf(command) {
-  if (command === 'inspect') return [];
+  const read = flags('read', TABLES.read);
+  if (command === 'inspect') return read;
   const reduce = [...flags('target', TARGETS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
-  return [...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface)] : []), ...flags('write', TABLES.write)];
+  return [...read, ...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface)] : []), ...flags('write', TABLES.write)];
 }
 
 /**
@@ -49,7 +53,9 @@ function flags(group, table) {
   return keys.map((key) => {
     const rule = table[key];
     const kind = key === 'attributes' ? 'list' : rule.accepts(true, '') ? 'switch' : 'value';
-    return { name: kebab(key), key, group, rule, kind, words: WORDS[key] };
+    // What a file says of itself and what is written are two things: `--up` and `--to-up`.
+    const name = group === 'write' && (key === 'up' || key === 'unit') ? `to-${key}` : kebab(key);
+    return { name, key, group, rule, kind, words: WORDS[key] };
   });
 }
 
@@ -80,7 +86,7 @@ export function parserOptions(flags) {
  */
 export function optionsFrom(command, values) {
   /** @type {Record<Flag['group'], Record<string, any>>} */
-  const given = { target: {}, reduce: {}, reconstruct: {}, write: {}, none: {} };
+  const given = { target: {}, reduce: {}, reconstruct: {}, read: {}, write: {}, none: {} };
   for (const flag of flagsOf(command)) {
     const value = valueOf(flag, values);
     if (value !== undefined) given[flag.group][flag.key] = value;
@@ -91,7 +97,7 @@ export function optionsFrom(command, values) {
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, write: given.write };
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, read: given.read, write: given.write };
 }
 
 /** @param {Flag} flag @param {Record<string, any>} values */

@@ -4,7 +4,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
-import { checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { UsageError } from './usage.js';
 import { doubtLines, infoLines, pointsOf, reportLine } from './words.js';
 
@@ -82,11 +82,11 @@ async function attempt(engine, task, job, done, signal) {
  * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
  * @returns {Promise<Result>}
  */
-async function perform(engine, { command, cloud: said, own, write, format }, { input, output }, watch) {
+async function perform(engine, { command, cloud: said, own, read, write, format }, { input, output }, watch) {
   const { signal } = watch;
   if (output !== undefined && output !== '-') await checkPlace(output);
   const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await openInput(input, signal), { name, ...watch, transfer: true });
+  const cloud = await engine.read(await openInput(input, signal), { name, beside: besideOf(input), ...read, ...watch, transfer: true });
   const { file } = cloud;
   if (cloud.positions.length === 0 && file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(file.dropped)}, none of them finite` });

@@ -33,10 +33,11 @@ export function doubtLines({ doubts }) {
  * @param {CloudInfo} info
  * @param {FileCloud} cloud
  */
-export function infoLines(info, { colors, normals, attributes = {}, viewpoints, up, seenFromAbove, file }) {
+export function infoLines(info, { colors, normals, attributes = {}, viewpoints, up, seenFromAbove, unit, file }) {
   // To a millionth of the diagonal, however far away the cloud is.
   const decimals = Math.min(Math.max(6 - Math.floor(Math.log10(info.diagonal || 1)), 0), 20);
   const corner = (/** @type {number[]} */ values) => values.map((x) => Number(x.toFixed(decimals))).join(' ');
+  const length = (/** @type {number} */ value) => `${short(value)}${unit ? ` ${unit}` : ''}`;
   const places = viewpoints && viewpoints.positions.length / 3;
   const also = [colors && 'colours', normals && 'normals', places && `${places} viewpoint${places === 1 ? '' : 's'}`, ...Object.keys(attributes)].filter(Boolean).join(', ');
   const rows = [
@@ -45,13 +46,15 @@ export function infoLines(info, { colors, normals, attributes = {}, viewpoints, 
     ['duplicates', whole(info.duplicates)],
     ['also has', also || 'nothing else'],
     ...(file.replaced > 0 ? [['of that', `${whole(file.replaced)} not finite, taken for 0`]] : []),
-    ...(file.faces > 0 ? [['faces', `${whole(file.faces)}, not read`]] : []),
+    ...(file.faces > 0 ? [['faces', `${whole(file.faces)}, ${file.sampled ? `${pointsOf(file.sampled)} taken from them` : 'not read'}`]] : []),
+    ...(file.missing ? [['not found', file.missing.join(', ')]] : []),
     ...(up ? [['up', `${corner(up)}${seenFromAbove ? ', seen from above' : ''}`]] : []),
+    ['unit', unit ?? 'not known: lengths are in file units'],
     ['lowest corner', corner(info.bounds.min)],
     ['highest corner', corner(info.bounds.max)],
-    ['diagonal', short(info.diagonal)],
-    ['spacing', short(info.spacing)],
-    ['noise', short(info.noise)],
+    ['diagonal', length(info.diagonal)],
+    ['spacing', length(info.spacing)],
+    ['noise', length(info.noise)],
   ];
   return rows.map(([name, value]) => `  ${name.padEnd(14)}  ${value}\n`).join('');
 }

@@ -4,6 +4,7 @@
  */
 
 /** @import { Loading, Up, View } from '../element.js' */
+/** @import { Orientation } from '../types.js' */
 
 /** There is none on a server, where the class is never made. @type {typeof HTMLElement} */
 const Base = globalThis.HTMLElement ?? /** @type {any} */ (class {});
@@ -12,11 +13,12 @@ const Base = globalThis.HTMLElement ?? /** @type {any} */ (class {});
 const VIEWS = /** @type {const} */ (['mesh', 'reduced', 'points']);
 const LOADINGS = /** @type {const} */ (['lazy', 'eager']);
 const UPS = /** @type {const} */ (['auto', 'y', 'z', '-y', '-z', 'x', '-x']);
+const ORIENTATIONS = /** @type {const} */ (['auto', 'normals', 'viewpoints', 'up', 'outward', 'inward']);
 const MOST_POINTS = 0xffffffff;
 const MOST_THREADS = 64;
 
 export class Reflecting extends Base {
-  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'loading', 'up'];
+  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'loading', 'up', 'orientation', 'flip'];
 
   /** For use at the end of a constructor: what a page has set before the element was defined goes where it belongs. */
   upgrade() {
@@ -105,6 +107,23 @@ export class Reflecting extends Base {
 
   set up(value) {
     write(this, 'up', value);
+  }
+
+  /** @returns {Orientation} */
+  get orientation() {
+    return readChoice(this, 'orientation', ORIENTATIONS);
+  }
+
+  set orientation(value) {
+    write(this, 'orientation', value);
+  }
+
+  get flip() {
+    return this.hasAttribute('flip');
+  }
+
+  set flip(value) {
+    this.toggleAttribute('flip', Boolean(value));
   }
 
   get autoRotate() {

@@ -108,6 +108,8 @@ export class PointWeaveElement extends Reflecting {
         break;
       case 'ratio':
       case 'count':
+      case 'orientation':
+      case 'flip':
         this.#retarget();
         this.#schedule();
         break;
@@ -168,9 +170,17 @@ export class PointWeaveElement extends Reflecting {
     return Boolean(this.#source && this.#viewer?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
   }
 
-  get #target() {
-    const { count, ratio } = this;
-    return count !== null ? { count } : ratio !== null ? { ratio } : undefined;
+  /** @returns {import('./source.js').Wish} */
+  get #wish() {
+    const { count, ratio, orientation, flip } = this;
+    const target = count !== null ? { count } : ratio !== null ? { ratio } : undefined;
+    return { target, orientation, flip };
+  }
+
+  /** Of what is shown. */
+  get report() {
+    const shown = this.#source?.kind === 'scan' ? this.#source.of(this.#best()) : undefined;
+    return shown && 'report' in shown ? /** @type {NonNullable<LoadDetail['report']>} */ (shown.report) : null;
   }
 
   #come() {
@@ -238,7 +248,7 @@ export class PointWeaveElement extends Reflecting {
         this.#showBest();
       }
       while (source.kind === 'scan' && !viewer.has(this.view)) {
-        await source.make(this.view, this.#target, work);
+        await source.make(this.view, this.#wish, work);
         signal.throwIfAborted();
         const { reduced = null, mesh = null } = source;
         viewer.set('reduced', reduced && { ...reduced, oriented: Boolean(mesh) });
@@ -279,11 +289,9 @@ export class PointWeaveElement extends Reflecting {
     this.#panels.end();
     const view = this.#showBest();
     viewer.draw();
-    const result = source.kind === 'scan' ? source.of(view) : undefined;
-    const report = result && 'report' in result ? /** @type {LoadDetail['report']} */ (result.report) : null;
-    const detail = { src, kind: source.kind, view, ...viewer.size(view), report };
+    const detail = { src, kind: source.kind, view, ...viewer.size(view), report: this.report };
     const { words } = PointWeaveElement;
-    this.#speech.say(`${this.alt || words.untitled}. ${words.shown(detail)}`);
+    this.#speech.say([this.alt || words.untitled, words.shown(detail), ...this.#doubts].join('. '));
     this.#send('load', detail);
   }
 
@@ -351,9 +359,15 @@ export class PointWeaveElement extends Reflecting {
     return [this.view, ...VIEWS.toReversed()].find((view) => this.#viewer?.has(view)) ?? this.view;
   }
 
+  /** What may be wrong with what is shown, in words. */
+  get #doubts() {
+    return (this.report?.doubts ?? []).map(PointWeaveElement.words.doubt);
+  }
+
   /** Says which view it is. */
   #showBest() {
     const view = this.#best();
+    setOrRemove(this.#parts.canvas, 'title', this.#doubts.join(' '));
     if (this.#viewer) this.#viewer.view = view;
     if (this.#loaded || !this.#panels.hasPoster) this.#panels.showPoster(false);
     this.#dress();

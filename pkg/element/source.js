@@ -6,7 +6,7 @@ import { sharedEngine } from './engines.js';
 import { fetchBytes } from './fetching.js';
 import { inTurn } from './turns.js';
 
-/** @import { EngineOptions, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
+/** @import { EngineOptions, Orientation, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
 /** @import { Stage, View } from '../element.js' */
 
 /**
@@ -17,6 +17,8 @@ import { inTurn } from './turns.js';
  * @property {() => boolean} seen
  * @property {EngineOptions} engine
  */
+
+/** What is asked for. @typedef {{ target?: Target, orientation: Orientation, flip: boolean }} Wish */
 
 /** What share of the whole each part takes, about. */
 const FETCHED = { glb: 0.9, points: 0.7, computed: 0.2 };
@@ -54,10 +56,10 @@ export class Scan {
   /**
    * Computes what a view needs. A mesh brings its reduced cloud along.
    * @param {View} view
-   * @param {Target | undefined} target
+   * @param {Wish} wish
    * @param {Work} work
    */
-  async make(view, target, work) {
+  async make(view, { target, ...side }, work) {
     const { signal, onProgress, seen } = work;
     const before = this.#done;
     this.#done = 0;
@@ -71,7 +73,7 @@ export class Scan {
       if (view === 'reduced') {
         this.reduced = await engine.reduce(this.cloud, { target, ...options });
       } else {
-        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...options });
+        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...side, ...options });
         this.reduced = this.mesh.cloud;
       }
     });

@@ -44,6 +44,7 @@ export const WORDS = {
   progress: (stage, percent) => `${stage}, ${percent} per cent`,
   shown: ({ view, points, triangles }) =>
     view === 'mesh' ? `Mesh of ${grouped(triangles)} triangles` : `${grouped(points)} ${view === 'reduced' ? 'reduced points' : 'points'}`,
+  doubt: ({ message }) => message,
   pose: describe,
 };
 

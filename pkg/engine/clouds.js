@@ -1,5 +1,6 @@
 /** The caller's clouds on their way in: of the right kind, and no longer the caller's memory. */
 import { own } from './arrays.js';
+import { UNITS } from './axes.js';
 import { PointweaveError } from './errors.js';
 
 /** @import { PointCloud } from '../types.js' */
@@ -37,7 +38,7 @@ function fields(object, name) {
 }
 
 /** @param {Record<string, any>} cloud @returns {PointCloud} */
-function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove }) {
+function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove, unit, crs, faces }) {
   if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
   if (colors !== undefined) expectArray('colors', colors, Uint8Array);
   if (normals !== undefined) expectArray('normals', normals, Float32Array);
@@ -45,15 +46,27 @@ function cloudFields({ positions, colors, normals, attributes = {}, origin, view
   for (const [name, triple] of Object.entries({ origin, up })) if (triple !== undefined) expectTriple(name, triple);
   if (viewpoints !== undefined) expectViewpoints(viewpoints);
   if (seenFromAbove !== undefined && typeof seenFromAbove !== 'boolean') throw badInput('seenFromAbove', 'true or false', seenFromAbove);
+  if (unit !== undefined && !UNITS.includes(unit)) throw badInput('unit', `one of ${UNITS.join(', ')}`, unit);
+  if (crs !== undefined) expectCrs(crs);
+  if (faces !== undefined && !Number.isSafeInteger(faces)) throw badInput('faces', 'an integer', faces);
   return {
-    positions, colors, normals, attributes: { ...attributes }, origin: origin && [...origin], up: up && [...up], seenFromAbove,
+    positions, colors, normals, attributes: { ...attributes }, origin: origin && [...origin], up: up && [...up], seenFromAbove, unit, faces,
     viewpoints: viewpoints && { positions: viewpoints.positions, of: viewpoints.of },
+    crs: crs && { wkt: crs.wkt, keys: crs.keys, doubles: crs.doubles, ascii: crs.ascii },
   };
 }
 
 /** @param {string} name @param {unknown} value */
 function expectTriple(name, value) {
   if (!(Array.isArray(value) && value.length === 3 && value.every(Number.isFinite))) throw badInput(name, 'three finite numbers', value);
+}
+
+/** @param {unknown} crs */
+function expectCrs(crs) {
+  const { wkt, keys, doubles, ascii } = fields(crs, 'crs');
+  for (const [name, text] of Object.entries({ wkt, ascii })) if (text !== undefined && typeof text !== 'string') throw badInput(`crs.${name}`, 'a text', text);
+  if (keys !== undefined) expectArray('crs.keys', keys, Uint16Array);
+  if (doubles !== undefined) expectArray('crs.doubles', doubles, Float64Array);
 }
 
 /** @param {unknown} viewpoints */

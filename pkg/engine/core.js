@@ -10,7 +10,7 @@ import { track } from './progress.js';
 /**
  * A function of `src/js/wasm.rs` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
@@ -22,7 +22,7 @@ import { track } from './progress.js';
  * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
  */
 
-/** The engine's builds, and those that hold readers of files alone. @typedef {Build | 'files' | 'las' | 'e57'} WasmBuild */
+/** The engine's builds, and those that hold readers of files, decoders of pictures, or writers alone. @typedef {Build | 'files' | 'las' | 'e57' | 'pictures' | 'exports'} WasmBuild */
 
 /**
  * @typedef {object} CoreOptions

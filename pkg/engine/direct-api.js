@@ -1,10 +1,12 @@
 /** Calls into one instance in the caller's thread, all but `read` synchronous: `direct.js` and `direct.node.js` export them. */
+import { direction } from './axes.js';
 import { awake } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
-import { checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { EXPORTED, checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { finder } from '../files/beside.js';
 import { readFile, readerError, readerOf } from '../files/reading.js';
 import { signed } from './reports.js';
 import { slicesOf } from '../files/byte-source.js';
@@ -19,13 +21,17 @@ const ARGUMENTS = {
   reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
   reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
   inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
-  write: (result, own, transfer) => [resultArgument(result, transfer), withoutMeshopt(own)],
+  write: (result, own, transfer) => [resultArgument(result, transfer), ownWriters(own)],
   sample: (model, own) => [{ model: checkModel(model), ...own }],
 };
 
-/** Compression waits for packages to load, and no call here waits. @param {Record<string, any>} own */
-function withoutMeshopt({ meshopt, ...plain }) {
-  if (!meshopt) return plain;
+/** Compression, and writers that are wasm of their own, wait for their loading, and no call here waits. @param {Record<string, any>} own */
+function ownWriters({ meshopt, up, ...plain }) {
+  if (EXPORTED.includes(plain.format)) {
+    const message = `${plain.format} is not written here: the engine's write does it`;
+    throw new PointweaveError({ code: 'bad-option', message, expected: 'ply, xyz, glb, obj or stl', found: plain.format });
+  }
+  if (!meshopt) return { ...plain, ...(up && { up: direction(up) }) };
   throw new PointweaveError({
     code: 'bad-option',
     message: "meshopt is not done here: give what write makes to compress of 'pointweave/meshopt'",
@@ -87,8 +93,14 @@ async function read({ compile, loadGlue }, wasmUrl, data, options) {
   const build = await readerOf(file, own.format);
   const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
   const host = await inProcessHost(glue, { build, module });
+  const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
+  const decode = async (/** @type {Uint8Array} */ bytes) => {
+    const [module, glue] = await Promise.all([compile('pictures', wasmUrl), loadGlue('pictures')]);
+    const pictures = await inProcessHost(glue, { build: 'pictures', module });
+    return pictures.run({ call: 'decodePicture', args: [bytes] }, { signal });
+  };
   try {
-    return await awake(readFile((request) => host.run(request, { signal }), file, { name: data.name, ...own }, { signal, onProgress }));
+    return await awake(readFile((request) => host.run(request, { signal }), file, given, { signal, onProgress }, { find: finder(beside), decode }));
   } catch (error) {
     throw readerError(error, build);
   }

@@ -2,13 +2,15 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after a crash and after most aborts)
  * that does them.
  */
+import { direction } from './axes.js';
 import { awake } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
+import { finder } from '../files/beside.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
-import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { EXPORTED, checkEngineOptions, checkModel, checkOptions } from './options.js';
 import { readFile, readerError, readerOf } from '../files/reading.js';
 import { signed } from './reports.js';
 import { slicesOf } from '../files/byte-source.js';
@@ -109,10 +111,14 @@ export class Engine {
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
     const file = slicesOf(data, transfer);
-    const given = { name: data.name, ...own };
+    const { beside, ...given } = /** @type {Record<string, any>} */ ({ name: data.name, ...own });
     return this.#queued(watch, async (signal) => {
       const reader = await readerOf(file, own.format);
-      return this.#withReader(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }));
+      const decode = (/** @type {Uint8Array} */ bytes) => this.#withModule('pictures', signal, (ask) => ask({ call: 'decodePicture', args: [bytes] }));
+      const helpers = { find: finder(beside), decode };
+      return this.#withModule(reader, signal, (ask) => readFile(ask, file, given, { signal, onProgress: watch.onProgress }, helpers)).catch((error) => {
+        throw readerError(error, reader);
+      });
     });
   }
 
@@ -120,8 +126,12 @@ export class Engine {
   async write(result, options) {
     const { own, transfer, ...watch } = this.#check('write', options);
     const { meshopt, ...plain } = own;
+    if (plain.up) plain.up = direction(plain.up);
     const compress = await compressorFor(meshopt);
-    const bytes = await this.#run({ call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
+    /** @type {Request} */
+    const request = { call: 'write', args: [resultArgument(result, transfer), plain] };
+    if (EXPORTED.includes(plain.format)) return this.#queued(watch, (signal) => this.#withModule('exports', signal, (ask) => ask(request)));
+    const bytes = await this.#run(request, watch);
     return compress ? compress(bytes) : bytes;
   }
 
@@ -238,24 +248,22 @@ export class Engine {
   }
 
   /**
-   * Does something with a reader's wasm, which is loaded for it and ends after it, with its memory.
+   * Does something with the wasm of a reader, of pictures or of writers, which is loaded for it and ends after it, with its memory.
    * @template T
-   * @param {import('../files/reading.js').Reader} reader
+   * @param {Exclude<WasmBuild, Build>} build
    * @param {AbortSignal} signal
    * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
    * @returns {Promise<T>}
    */
-  async #withReader(reader, signal, job) {
+  async #withModule(build, signal, job) {
     const { compile, loadGlue, startWorker, worker } = this.#platform;
-    const module = await unlessAborted(compile(reader, this.#wasmUrl), signal);
+    const module = await unlessAborted(compile(build, this.#wasmUrl), signal);
     const inWorker = this.build === 'threads' || (this.#worker ?? worker);
     const host = await (inWorker
-      ? workerHost(() => startWorker(this.#workerUrl), { build: reader, threads: 1, module })
-      : inProcessHost(await loadGlue(reader), { build: reader, module }));
+      ? workerHost(() => startWorker(this.#workerUrl), { build, threads: 1, module })
+      : inProcessHost(await loadGlue(build), { build, module }));
     try {
       return await job((request) => host.run(request, { signal }));
-    } catch (error) {
-      throw readerError(error, reader);
     } finally {
       host.end();
     }

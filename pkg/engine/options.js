@@ -2,6 +2,7 @@
  * The options of every call, and the checks at the border. Those of a reduction and a reconstruction are written from the one
  * table in Rust; here stand those that are the package's own.
  */
+import { AXES, UNITS, isDirection } from './axes.js';
 import { RECONSTRUCT, REDUCE } from './options-table.js';
 import { badOption, checkTable, choice, defaultsOf, integer, isObject, number, rule, toggle } from './rules.js';
 
@@ -10,14 +11,21 @@ import { badOption, checkTable, choice, defaultsOf, integer, isObject, number, r
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
   format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57'), fallback: undefined },
+  faces: choice('sample', 'vertices'),
+  beside: rule('an array of Files, or a function that gives the data of a name', (value) => typeof value === 'function' || (Array.isArray(value) && value.every((file) => typeof file?.name === 'string'))),
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz', 'glb', 'obj', 'stl'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
+  up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },
+  unit: { ...choice(...UNITS), fallback: undefined },
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
+
+/** Formats whose writer is a build of its own. */
+export const EXPORTED = ['pcd', 'las', 'laz', '3mf'];
 
 const MODEL = choice('duck', 'pig', 'part');
 
@@ -27,14 +35,17 @@ const SAMPLE = {
   noise: number(0, 0.01, { fallback: 5e-4 }),
 };
 
+/** Folders of `pkg/wasm`. */
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'pictures', 'exports'];
+
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
   worker: toggle(),
   workerUrl: rule("the URL of the worker's script", isUrl),
   idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
-    'the URL of the folder that holds single/, threads/, files/, las/ and e57/, or an object { single, threads, files, las, e57 } of file URLs',
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => ['single', 'threads', 'files', 'las', 'e57'].includes(key) && isUrl(value[key]))),
+    `the URL of the folder that holds ${BUILDS.join('/, ')}/, or an object { ${BUILDS.join(', ')} } of file URLs`,
+    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => BUILDS.includes(key) && isUrl(value[key]))),
   ),
 };
 

@@ -41,6 +41,8 @@ function wasmFile(build, given) {
     files: () => new URL('../wasm/files/pointweave_bg.wasm', import.meta.url),
     las: () => new URL('../wasm/las/pointweave_bg.wasm', import.meta.url),
     e57: () => new URL('../wasm/e57/pointweave_bg.wasm', import.meta.url),
+    pictures: () => new URL('../wasm/pictures/pointweave_bg.wasm', import.meta.url),
+    exports: () => new URL('../wasm/exports/pointweave_bg.wasm', import.meta.url),
   }[build]();
   if (!given) return file.href;
   if (typeof given === 'string' || given instanceof URL) return new URL(`${given}`.replace(/\/?$/, `/${build}/pointweave_bg.wasm`), location.href).href;

@@ -7,6 +7,8 @@ const MODULES = {
   files: () => import('../wasm/files/pointweave.js'),
   las: () => import('../wasm/las/pointweave.js'),
   e57: () => import('../wasm/e57/pointweave.js'),
+  pictures: () => import('../wasm/pictures/pointweave.js'),
+  exports: () => import('../wasm/exports/pointweave.js'),
 };
 
 /**

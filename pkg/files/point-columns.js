@@ -28,6 +28,10 @@ import { PointweaveError } from '../engine/errors.js';
  * @property {Stations} [stations] where the points were seen from
  * @property {[number, number, number]} [up]
  * @property {boolean} seenFromAbove
+ * @property {import('../types.js').Unit} [unit]
+ * @property {import('../types.js').Crs} [crs]
+ * @property {number} sampled points that were taken from faces
+ * @property {string[]} missing files that the faces name and that were not there
  */
 
 /**
@@ -61,7 +65,7 @@ export class Columns {
    * @param {Summary} summary
    * @returns {FileCloud}
    */
-  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, stations, up, seenFromAbove }) {
+  finish({ format, dropped, replaced, faces, narrow, colorScale, hasColors, hasNormals, stations, up, seenFromAbove, unit, crs, sampled, missing }) {
     const positions = this.#take('positions') ?? new Float32Array(0);
     const normals = this.#take('normals');
     const colors = hasColors ? this.#take('colors') : undefined;
@@ -74,7 +78,10 @@ export class Columns {
       ...(stations && { viewpoints: viewpointsOf(stations, positions.length / 3) }),
       ...(up && { up }),
       ...(seenFromAbove && { seenFromAbove }),
-      file: { format, dropped, replaced, faces },
+      ...(unit && { unit }),
+      ...(crs && { crs }),
+      ...(sampled > 0 && { faces }),
+      file: { format, dropped, replaced, faces, ...(sampled > 0 && { sampled }), ...(missing.length > 0 && { missing }) },
     });
   }
 

@@ -25,13 +25,21 @@ export async function readerOf(file, format) {
 }
 
 /**
+ * What a mesh needs besides its file.
+ * @typedef {object} Helpers
+ * @property {(name: string) => Promise<Uint8Array | undefined>} find the bytes of a file beside
+ * @property {(bytes: Uint8Array) => Promise<{ width: number, height: number, pixels: Uint8Array } | undefined>} decode a picture's
+ */
+
+/**
  * @param {(request: Request) => Promise<any>} ask one request of the wasm that has the reader
  * @param {Slices} file
  * @param {{ name?: string, format?: Format }} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
+ * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
-export async function readFile(ask, file, options, { signal, onProgress }) {
+export async function readFile(ask, file, options, { signal, onProgress }, { find, decode }) {
   const columns = new Columns();
   let told = 0;
   /** @param {number} share */
@@ -61,13 +69,18 @@ export async function readFile(ask, file, options, { signal, onProgress }) {
     tell((at / file.size) * (columns.points > 0 ? 0.99 : 0.5));
   }
   for (;;) {
-    /** @type {{ block?: Block, summary?: Summary }} */
-    const { block, summary } = await ask({ call: 'readEnd', args: [] });
+    /** @type {{ block?: Block, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
+    const { block, summary, want } = await ask({ call: 'readEnd', args: [] });
     const expected = add(block, file.size);
     if (summary) {
       const cloud = columns.finish(summary);
       tell(1);
       return cloud;
+    }
+    if (want?.file !== undefined) await ask({ call: 'readFile', args: [await find(want.file)] });
+    if (want?.picture) {
+      const { width = 0, height = 0, pixels } = (await decode(want.picture)) ?? {};
+      await ask({ call: 'readPicture', args: [pixels, width, height] });
     }
     tell(0.5 + 0.49 * Math.min(1, columns.points / Math.max(expected, 1)));
   }

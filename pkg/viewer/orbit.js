@@ -1,6 +1,6 @@
-/** How one moves around: pointer, calls, a slow turn of its own, straight looks at the sides, and back to the first look. */
+/** How one moves around: gestures, calls, a slow turn of its own, straight looks at the sides, and back to the first look. */
 import { MathUtils, Quaternion, Spherical, Vector3 } from 'three';
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Gestures } from './gestures.js';
 import { calm } from './watching.js';
 
 /** @import { Axis, Mover, Pose, Side } from '../viewer.js' */
@@ -14,6 +14,12 @@ const FLIGHT_MS = 420;
 /** A slow turn: once around in half a minute; it rests a while after a hand was on it. */
 const TURN_PER_MS = (2 * Math.PI) / 30_000;
 const REST_MS = 3000;
+/** What a pointer has moved is followed by this share a millisecond (a twentieth a frame), so that it glides to rest. */
+const FOLLOW = -Math.log(0.95) / (1000 / 60);
+/** @typedef {{ right: number, over: number, x: number, y: number }} Lag */
+/** Less than this is at rest. */
+const STILL = 1e-4;
+const NO_LAG = { right: 0, over: 0, x: 0, y: 0 };
 /** From so many sides what turns is looked at, to know whether it fits. */
 const VIEWS = 12;
 
@@ -41,10 +47,8 @@ export class Orbit {
   #element;
   #embedded;
   #changed;
-  /** @type {OrbitControls | undefined} */
-  #controls;
+  #gestures;
   #target = new Vector3();
-  #enabled = false;
   #turning = false;
   /** Lines that are parallel look parallel: an orthographic projection. */
   #parallel = false;
@@ -56,11 +60,10 @@ export class Orbit {
   #untouched = true;
   /** @type {Flight | null} */
   #flight = null;
-  /** Who has moved last. @type {Mover} */
-  #mover = 'program';
+  /** What a pointer has moved and the camera has not followed yet: radians, and shares of the picture's height. */
+  #lag = NO_LAG;
   #last = 0;
   #restUntil = 0;
-  #updating = false;
 
   /**
    * @param {import('three').PerspectiveCamera} camera
@@ -75,57 +78,28 @@ export class Orbit {
     this.#element = element;
     this.#embedded = embedded;
     this.#changed = changed;
+    this.#gestures = new Gestures(element, {
+      begin: () => this.#rest(),
+      drag: (x, y) => this.#follow({ right: -2 * Math.PI * x, over: -2 * Math.PI * y }),
+      shift: (x, y) => this.#follow({ x, y }),
+      pinch: (factor) => this.zoom(factor, 'pointer'),
+    }, embedded);
     camera.position.copy(FIRST_LOOK).multiplyScalar(2);
   }
 
   /** Listens to the pointer, or no longer. @param {boolean} on */
   listen(on) {
-    if (on === Boolean(this.#controls)) return;
-    if (on) {
-      this.#controls = this.#connect();
-      if (this.#embedded) this.#element.addEventListener('wheel', this.#allowZoom, { capture: true, passive: true });
-    } else {
-      this.#target.copy(this.#aim);
-      this.#element.removeEventListener('wheel', this.#allowZoom, { capture: true });
-      this.#controls?.dispose();
-      this.#controls = undefined;
-    }
-    this.enable(this.#enabled);
+    this.#gestures.listen(on);
   }
-
-  #connect() {
-    const controls = new OrbitControls(this.#camera, this.#element);
-    controls.target.copy(this.#target);
-    controls.minDistance = NEAREST;
-    controls.maxDistance = FARTHEST;
-    controls.zoomSpeed = 1.4;
-    controls.addEventListener('start', () => {
-      this.#rest();
-      this.#mover = 'pointer';
-    });
-    // What moves while a frame is made is in that frame; only a movement that dies away needs another.
-    controls.addEventListener('change', () => {
-      if (!this.#updating || controls.enableDamping) this.#changed(this.#mover);
-    });
-    return controls;
-  }
-
-  /** A wheel over the picture scrolls the page, unless one has taken hold of the picture, or pinches. */
-  #allowZoom = (/** @type {WheelEvent} */ event) => {
-    const root = /** @type {Document | ShadowRoot} */ (this.#element.getRootNode());
-    if (this.#controls) this.#controls.enableZoom = event.ctrlKey || root.activeElement === this.#element;
-  };
 
   /** Whether the pointer moves it. @param {boolean} on */
   enable(on) {
-    this.#enabled = on;
-    if (this.#controls) this.#controls.enabled = on;
+    this.#gestures.enabled = on;
     this.#element.style.touchAction = on ? (this.#embedded ? 'pan-y' : 'none') : '';
-    this.#element.style.cursor = '';
   }
 
   get enabled() {
-    return this.#enabled;
+    return this.#gestures.enabled;
   }
 
   get autoRotate() {
@@ -153,7 +127,7 @@ export class Orbit {
 
   /** From the camera to what it turns around. */
   get distance() {
-    return this.#camera.position.distanceTo(this.#aim);
+    return this.#camera.position.distanceTo(this.#target);
   }
 
   /** Takes something new to look at. @param {Float32Array} outline a few points of it @param {Axis} up */
@@ -203,7 +177,7 @@ export class Orbit {
     this.#fitted.radius = this.#distanceFrom(this.#fitted);
     if (!fitted) return;
     place.radius = this.#fitted.radius;
-    this.#put(place, this.#aim);
+    this.#put(place, this.#target);
   }
 
   /** Turns around it. @param {number} right @param {number} over radians @param {Mover} by */
@@ -211,16 +185,16 @@ export class Orbit {
     this.#rest();
     const place = this.#place;
     place.theta += right;
-    place.phi = MathUtils.clamp(place.phi - over, 0.01, Math.PI - 0.01);
-    this.#put(place, this.#aim, by);
+    place.phi = upTo(place.phi - over);
+    this.#put(place, this.#target, by);
   }
 
   /** @param {number} factor under 1 comes nearer @param {Mover} by */
   zoom(factor, by) {
-    this.#rest();
+    if (by !== 'pointer') this.#rest(); // who holds it has made it rest
     const place = this.#place;
     place.radius = MathUtils.clamp(place.radius * factor, NEAREST, FARTHEST);
-    this.#put(place, this.#aim, by);
+    this.#put(place, this.#target, by);
   }
 
   /** @returns {Pose} */
@@ -235,12 +209,7 @@ export class Orbit {
     this.#last = now;
     if (this.#flight) this.#fly(this.#flight);
     else if (this.turning) this.#drift(passed);
-    if (this.#controls) {
-      this.#controls.enableDamping = !calm().wanted;
-      this.#updating = true;
-      this.#controls.update();
-      this.#updating = false;
-    }
+    this.#glide(calm().wanted ? 1 : 1 - Math.exp(-FOLLOW * passed));
     const distance = this.#camera.position.length();
     this.#camera.near = this.#parallel ? distance - 1 : Math.max(distance * 0.005, distance - 1);
     this.#camera.far = distance + 1;
@@ -248,11 +217,33 @@ export class Orbit {
     if (this.#parallel) flatten(this.#camera, this.distance);
   }
 
+  /** A pointer has moved it. @param {Partial<Lag>} way */
+  #follow(way) {
+    const { right, over, x, y } = this.#lag;
+    this.#lag = { right: right + (way.right ?? 0), over: over + (way.over ?? 0), x: x + (way.x ?? 0), y: y + (way.y ?? 0) };
+    this.#changed('pointer');
+  }
+
+  /** The camera follows the pointer. @param {number} share of the way */
+  #glide(share) {
+    if (this.#lag === NO_LAG) return;
+    const { right, over, x, y } = this.#lag;
+    if (Math.hypot(right, over, x, y) < STILL) share = 1;
+    const place = this.#place;
+    const height = 2 * place.radius * Math.tan(MathUtils.degToRad(this.#camera.fov) / 2);
+    const move = new Vector3(-x, y, 0).multiplyScalar(share * height).applyQuaternion(this.#camera.quaternion);
+    place.theta += share * right;
+    place.phi = upTo(place.phi + share * over);
+    const left = 1 - share;
+    this.#lag = left ? { right: left * right, over: left * over, x: left * x, y: left * y } : NO_LAG;
+    this.#put(place, move.add(this.#target), 'pointer');
+  }
+
   /** @param {number} passed milliseconds */
   #drift(passed) {
     const place = this.#place;
     if (performance.now() >= this.#restUntil) place.theta += TURN_PER_MS * passed;
-    this.#put(place, this.#aim);
+    this.#put(place, this.#target);
   }
 
   /** Moves the camera to where everything is seen from there. @param {Spherical} to @param {boolean} animated @param {Mover} [by] */
@@ -260,11 +251,12 @@ export class Orbit {
     to.radius = this.#distanceFrom(to);
     this.#fitted = to.clone();
     this.#flight = null;
+    this.#lag = NO_LAG;
     if (!animated || calm().wanted) return this.#put(to, new Vector3(), by);
     this.#restUntil = performance.now() + REST_MS;
     const from = this.#place;
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI)); // the short way
-    this.#flight = { from, to, target: this.#aim.clone(), start: performance.now(), by };
+    this.#flight = { from, to, target: this.#target.clone(), start: performance.now(), by };
     this.#changed(by);
   }
 
@@ -281,24 +273,20 @@ export class Orbit {
   /** A hand is on it: what moves by itself rests. */
   #rest() {
     this.#flight = null;
+    this.#lag = NO_LAG;
     this.#untouched = false;
     this.#restUntil = performance.now() + REST_MS;
   }
 
-  get #aim() {
-    return this.#controls?.target ?? this.#target;
-  }
-
   get #place() {
-    return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#aim));
+    return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#target));
   }
 
   /** @param {Spherical} place @param {Vector3} target @param {Mover} [by] */
   #put(place, target, by = 'program') {
-    this.#aim.copy(target);
+    this.#target.copy(target);
     this.#camera.position.setFromSpherical(place).add(target);
     this.#camera.lookAt(target);
-    this.#mover = by;
     this.#changed(by);
   }
 
@@ -330,6 +318,11 @@ export class Orbit {
     }
     return distance;
   }
+}
+
+/** Not over the poles. @param {number} phi */
+function upTo(phi) {
+  return MathUtils.clamp(phi, 0.01, Math.PI - 0.01);
 }
 
 /**

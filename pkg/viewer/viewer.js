@@ -5,6 +5,7 @@ import { frameOf } from './frame.js';
 import { MOVES, listenToKeys } from './keyboard.js';
 import { Orbit } from './orbit.js';
 import { sharedPainter } from './painter.js';
+import { triangleAt } from './pick.js';
 import { Size } from './size.js';
 import { ALWAYS, Stage } from './stage.js';
 import { likelyUp } from './upright.js';
@@ -257,6 +258,18 @@ class CanvasViewer extends EventTarget {
   /** @param {import('../viewer.js').Side} side */
   lookFrom(side) {
     this.#orbit.lookFrom(side);
+  }
+
+  /** @param {number} x @param {number} y */
+  pick(x, y) {
+    const { width, height, ratio } = this;
+    const side = this.sides.find(({ from, to }) => x * ratio >= from && x * ratio < to);
+    const layer = side && this.#stage.layers.get(side.layer);
+    if (!side || !layer) return null;
+    this.#orbit.update(performance.now());
+    this.camera.updateMatrixWorld();
+    const triangle = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
+    return triangle < 0 ? null : { layer: side.layer, triangle };
   }
 
   /** @param {string} [type] @param {number} [quality] */

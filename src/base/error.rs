@@ -73,7 +73,7 @@ pub enum Error {
     },
     /// A format that holds triangles alone was asked for points.
     #[error(
-        "an STL file holds triangles, and there are none: write points as PLY, XYZ, GLB or OBJ"
+        "STL and 3MF files hold triangles, and there are none: write points as PLY, XYZ, GLB, OBJ, PCD or LAS"
     )]
     NeedsTriangles,
     /// The file's content breaks its format's rules.

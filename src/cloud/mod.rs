@@ -1,14 +1,20 @@
 //! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
 
 pub(crate) mod copies;
+mod crs;
+pub mod morton;
 pub mod neighborhood;
 pub mod octree;
+pub mod queries;
+mod unit;
 mod viewpoints;
 
 use crate::base::error::{Error, Result};
 use glam::Vec3;
 use std::ops::Range;
 
+pub use crs::Crs;
+pub use unit::Unit;
 pub use viewpoints::Viewpoints;
 
 /// The bounding box is that of the others where a few points make it this many times as long: at 100 times a surface of
@@ -134,6 +140,12 @@ pub struct Cloud {
     pub up: Option<Vec3>,
     /// Whether all was seen from high above, along `up` (z where there is none): airborne scans.
     pub seen_from_above: bool,
+    /// What a coordinate of the caller's frame is.
+    pub unit: Option<Unit>,
+    /// The reference system of world coordinates; carried along.
+    pub crs: Option<Crs>,
+    /// How many faces the points were taken from; 0 for points that were measured.
+    pub faces: u64,
 }
 
 impl Cloud {
@@ -179,6 +191,9 @@ impl Cloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            unit: None,
+            crs: None,
+            faces: 0,
         })
     }
 
@@ -272,6 +287,12 @@ impl Cloud {
         self
     }
 
+    /// Says what a coordinate of the caller's frame is.
+    pub fn with_unit(mut self, unit: Unit) -> Cloud {
+        self.unit = Some(unit);
+        self
+    }
+
     /// These points alone, in the unit frame of their own bounding box. Positions are rounded once more: by at most 2⁻²⁴ of
     /// this cloud's diagonal.
     ///
@@ -300,6 +321,9 @@ impl Cloud {
             viewpoints: self.viewpoints.as_ref().map(|v| v.select(each())),
             up: self.up,
             seen_from_above: self.seen_from_above,
+            unit: self.unit,
+            crs: self.crs.clone(),
+            faces: self.faces,
             ..Cloud::from_f64(&positions)?
         })
     }

@@ -10,7 +10,8 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::base::linalg::{SymEigen, sym_eigen};
 use crate::base::par;
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 
 /// Points of a group.
 const GROUP: usize = 16;

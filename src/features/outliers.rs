@@ -27,7 +27,8 @@ use crate::base::linalg::{outer, sym_eigen};
 use crate::base::par;
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::copies::copies;
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 
 /// In place of a reduced point's index in an assignment: the input point was dropped.
 pub const DROPPED: u32 = u32::MAX;

@@ -10,7 +10,8 @@ use glam::Vec3;
 use crate::base::lanes::{LANES, Lanes};
 use crate::base::linalg::least_axis;
 use crate::cloud::neighborhood::{Block, Neighborhood, bounds, even_reach};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 
 /// R, in distances to the k-th neighbour of a block's middle point: the weights then amount to those of 0.8 k equal ones. On
 /// clean clouds of four models that the bench does not use 1.15 to 1.5 give the same surfaces; thin parts of the samples want

@@ -8,7 +8,8 @@
 //! A rounded coordinate is off by up to half a step, evenly: a standard deviation of step/√12 (W. R. Bennett, "Spectra of
 //! quantized signals", 1948).
 
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::features::noise::quantile;
 use glam::DVec2;
 

@@ -15,7 +15,7 @@ use crate::base::kernel::phi;
 use crate::base::par;
 use crate::base::params::{Kernel, Smoothing, SurfaceParams};
 use crate::base::progress::{Progress, Stage};
-use crate::cloud::octree::Neighbor;
+use crate::cloud::queries::Neighbor;
 use crate::fit::cells::{Growth, Sites, Subdomain};
 use crate::fit::faces::Faces;
 use crate::fit::local::{LocalFit, Rbf};

@@ -1,12 +1,15 @@
 //! E57 (ASTM E2807), by the crate `e57`: the points of all its scans, each at its pose, spherical coordinates made Cartesian.
 //! Colours are taken over the range that the file gives them, `intensity` as it is, normals where the extension for
-//! surface normals has them. Points that the scanner marked as invalid are left out and counted.
+//! surface normals has them, and every other value of a point as an attribute where one is not 0; times are counted from the
+//! scan's first. Points without a colour, where others have one, are white. Points that the scanner marked as invalid
+//! are left out and counted.
 //!
 //! The file is kept until all of it is there, because its directory is at its end; scans are then read one after the other.
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use crate::base::error::{Error, Result};
 use ::e57::{CartesianCoordinate, E57Reader, PointCloud, RecordDataType, RecordName, Transform};
 use std::io::Cursor;
@@ -41,11 +44,38 @@ impl Parser for E57 {
             if table.rows - start >= STEP {
                 return Ok(Step::More);
             }
-            read_scan(&mut file, scan, input, table)?;
+            read_scan(&mut file, scan, &extra_names(&scans), input, table)?;
             self.read += 1;
         }
         Ok(Step::Done)
     }
+}
+
+/// What a value beyond the known ones is called: as in the file.
+fn extra_name(name: &RecordName) -> Option<String> {
+    match name {
+        RecordName::RowIndex => Some("rowIndex".into()),
+        RecordName::ColumnIndex => Some("columnIndex".into()),
+        RecordName::ReturnCount => Some("returnCount".into()),
+        RecordName::ReturnIndex => Some("returnIndex".into()),
+        RecordName::TimeStamp => Some("timeStamp".into()),
+        RecordName::Unknown { name, .. } => {
+            (!NORMAL.contains(&name.as_str())).then(|| name.clone())
+        }
+        _ => None,
+    }
+}
+
+/// Names of the extra values of all scans, each once.
+fn extra_names(scans: &[PointCloud]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let records = scans.iter().flat_map(|scan| &scan.prototype);
+    for name in records.filter_map(|record| extra_name(&record.name)) {
+        if !names.contains(&name) && name != "intensity" {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// The normals' names in their extension.
@@ -66,14 +96,17 @@ fn normals(scan: &PointCloud) -> Option<[usize; 3]> {
 /// The columns of the rows that [`read_scan`] makes: what any of the scans has.
 fn columns(scans: &[PointCloud]) -> Columns {
     let any = |has: fn(&PointCloud) -> bool| scans.iter().any(has);
+    let mut scalars = Vec::new();
+    if any(PointCloud::has_intensity) {
+        scalars.push((6, "intensity".into()));
+    }
+    let optional_from = scalars.len();
+    let extras = extra_names(scans).into_iter().enumerate();
+    scalars.extend(extras.map(|(i, name)| (KNOWN + i, name)));
     Columns {
-        position: [0, 1, 2],
         color: any(PointCloud::has_color).then_some([3, 4, 5]),
-        scalars: if any(PointCloud::has_intensity) {
-            vec![(6, "intensity".into())]
-        } else {
-            Vec::new()
-        },
+        scalars,
+        optional_from,
         normal: any(|scan| normals(scan).is_some()).then_some([7, 8, 9]),
         colors: ColorRange::Unit,
         precision: if scans.iter().all(is_single) {
@@ -81,8 +114,12 @@ fn columns(scans: &[PointCloud]) -> Columns {
         } else {
             Precision::Double
         },
+        ..Columns::xyz()
     }
 }
+
+/// Values of a row before the extra ones: place, colour, intensity, normal.
+const KNOWN: usize = 10;
 
 /// Whether single precision holds the coordinates: they have no more, and stay where they are.
 fn is_single(scan: &PointCloud) -> bool {
@@ -123,6 +160,7 @@ fn bits(scan: &PointCloud) -> u64 {
 fn read_scan(
     file: &mut E57Reader<Cursor<&[u8]>>,
     scan: &PointCloud,
+    names: &[String],
     input: &Input,
     table: &mut Table,
 ) -> Result<()> {
@@ -152,34 +190,61 @@ fn read_scan(
         let turn = Turn::of(scan.transform.as_ref());
         // Normals are none of what the crate knows, so they are read beside the points.
         let mut second = E57Reader::new(Cursor::new(bytes))?;
-        let mut raw = match normals(scan) {
-            Some(indices) => Some((second.pointcloud_raw(scan)?, indices)),
-            None => None,
+        let normals = normals(scan);
+        let extras = scan.prototype.iter().enumerate();
+        let extras: Vec<(usize, usize)> = extras
+            .filter_map(|(i, record)| {
+                let name = extra_name(&record.name)?;
+                Some((i, names.iter().position(|known| *known == name)?))
+            })
+            .collect();
+        let is_time = |i: usize| scan.prototype[i].name == RecordName::TimeStamp;
+        let mut start = None;
+        let mut raw = if normals.is_some() || !extras.is_empty() {
+            Some(second.pointcloud_raw(scan)?)
+        } else {
+            None
         };
+        if let Some(Transform { translation, .. }) = &scan.transform {
+            let sensor = [translation.x, translation.y, translation.z];
+            table.seen_from(Some(sensor));
+        }
+        let mut row = vec![0.0; KNOWN + names.len()];
         for point in points {
             let point = match point {
                 Err(error) if is_packet_without_points(&error) => continue,
                 other => other?,
             };
-            let mut row = [f64::NAN; 10];
-            if let CartesianCoordinate::Valid { x, y, z } = point.cartesian {
-                row[..3].copy_from_slice(&[x, y, z]);
-            }
+            let values = match raw.as_mut().and_then(Iterator::next) {
+                Some(values) => values?,
+                None => Vec::new(),
+            };
+            let CartesianCoordinate::Valid { x, y, z } = point.cartesian else {
+                table.invalid += 1;
+                continue;
+            };
+            row[..3].copy_from_slice(&[x, y, z]);
             let color = point
                 .color
-                .map_or([0.0; 3], |color| [color.red, color.green, color.blue]);
+                .map_or([1.0; 3], |color| [color.red, color.green, color.blue]);
             row[3..6].copy_from_slice(&color.map(f64::from));
             row[6] = f64::from(point.intensity.unwrap_or(0.0));
             row[7..].fill(0.0);
-            if let Some((raw, indices)) = &mut raw
-                && let Some(values) = raw.next()
-            {
-                let values = values?;
-                let mut normal = [0.0; 3];
-                for (value, &i) in normal.iter_mut().zip(&*indices) {
-                    *value = values[i].to_f64(&scan.prototype[i].data_type)?;
-                }
-                row[7..].copy_from_slice(&turn.apply(normal));
+            let value = |i: usize| match values.get(i) {
+                Some(value) => value.to_f64(&scan.prototype[i].data_type),
+                None => Ok(0.0),
+            };
+            if let Some(indices) = normals {
+                let [x, y, z] = indices.map(value);
+                row[7..KNOWN].copy_from_slice(&turn.apply([x?, y?, z?]));
+            }
+            for &(i, name) in &extras {
+                let value = value(i)?;
+                row[KNOWN + name] = if is_time(i) {
+                    value - *start.get_or_insert(value)
+                } else {
+                    value
+                };
             }
             table.push(&row);
         }
@@ -242,11 +307,52 @@ impl Turn {
     }
 }
 
+/// What the crate says is wrong, with its causes: in the file's directory where `at` is 0, else in the points there.
+fn wrong(input: &Input, at: u64, error: &::e57::Error) -> Error {
+    use ::e57::Error::{Internal, Invalid, NotImplemented, Read, Write};
+    let (Invalid { desc, .. }
+    | Read { desc, .. }
+    | Write { desc, .. }
+    | Internal { desc, .. }
+    | NotImplemented { desc }) = error
+    else {
+        return input.bad_byte(at, "an E57 file that is whole", error.to_string());
+    };
+    let mut found = desc.trim_end_matches('.').to_string();
+    let mut cause = std::error::Error::source(error);
+    while let Some(error) = cause {
+        found = format!("{found} ({error})");
+        cause = error.source();
+    }
+    if matches!(error, NotImplemented { .. }) {
+        return input.unsupported("what the standard's core has", found);
+    }
+    let expected = if at == 0 {
+        "a header and a directory that are whole"
+    } else {
+        "points that are whole"
+    };
+    // The crate tells no byte; the directory is said in the header to be at the byte in it.
+    let place = input
+        .rest()
+        .get(24..32)
+        .and_then(|bytes| bytes.first_chunk());
+    let directory = place.map_or(0, |bytes| u64::from_le_bytes(*bytes));
+    let at = if at == 0 {
+        directory.min(input.size)
+    } else {
+        at
+    };
+    input.bad_byte(at, expected, found)
+}
+
 /// What the crate gives; its errors, and its panics, as an error at `at`.
 fn guarded<T>(input: &Input, at: u64, call: impl FnOnce() -> ::e57::Result<T>) -> Result<T> {
-    let bad = |found: String| -> Error { input.bad_byte(at, "E57 content", found) };
     match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(result) => result.map_err(|error| bad(error.to_string())),
-        Err(_) => Err(bad("content that cannot be taken apart".into())),
+        Ok(result) => result.map_err(|error| wrong(input, at, &error)),
+        Err(_) => {
+            let expected = "points that can be taken apart";
+            Err(input.bad_byte(at, expected, "damaged ones"))
+        }
     }
 }

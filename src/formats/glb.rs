@@ -1,18 +1,23 @@
 //! Binary glTF 2.0 (Khronos): the vertices of its scene, each mesh as often as a node places it, at that place. Normals and
 //! the first set of colours are taken where every mesh has them. Quantised and sparse values are read; compressed meshes
-//! (Draco, meshopt) and data outside of the file are not.
+//! (Draco, meshopt) and data outside of the file are not. Where points are taken from its triangles, they have the colours of
+//! its materials and their textures.
 //!
 //! Why not the crate `gltf`: it trusts what a file says of its own bytes, knows of no quantised positions, and is larger
 //! than all readers here together.
 
 mod accessor;
+mod materials;
 mod scene;
 
+use super::colors::ColorRange;
+use super::faces::{Face, Faces, NONE, srgb};
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use crate::base::error::Result;
 use accessor::Accessor;
+use materials::Placing;
 use scene::{Document, Placed};
 
 /// Meshes that many nodes place make many points of few bytes: no more than these are believed.
@@ -21,7 +26,15 @@ const MOST_POINTS: usize = 1 << 27;
 /// Reads the vertices.
 #[derive(Default)]
 pub(super) struct Glb {
-    faces: u64,
+    count: u64,
+    /// Where they are wanted.
+    faces: Option<Faces>,
+}
+
+impl Glb {
+    pub(super) fn new(faces: Option<Faces>) -> Glb {
+        Glb { count: 0, faces }
+    }
 }
 
 impl Parser for Glb {
@@ -41,29 +54,46 @@ impl Parser for Glb {
             let found = format!("{points} once its nodes have placed them");
             return Err(input.unsupported(&format!("at most {MOST_POINTS} vertices"), found));
         }
+        let wanted = self.faces.is_some();
+        // What some meshes have and others lack is known to the faces, and would be wrong of points.
         let has = |name: &str| {
-            !parts.is_empty()
-                && parts
-                    .iter()
-                    .all(|part| part.primitive.attributes.contains_key(name))
+            let mut have = parts
+                .iter()
+                .map(|part| part.primitive.attributes.contains_key(name));
+            if wanted {
+                have.any(|has| has)
+            } else {
+                !parts.is_empty() && have.all(|has| has)
+            }
         };
         let columns = Columns {
-            position: [0, 1, 2],
             normal: has("NORMAL").then_some([3, 4, 5]),
             color: has("COLOR_0").then_some([6, 7, 8]),
-            scalars: Vec::new(),
             colors: ColorRange::Unit,
-            precision: Precision::AsNeeded,
+            ..Columns::xyz()
         };
         let table = table.insert(Table::new(columns, None));
+        table.gone = wanted.then(Vec::new);
+        let placings = match &mut self.faces {
+            Some(faces) => materials::looks(&document, buffer, faces),
+            None => Vec::new(),
+        };
         for part in &parts {
-            self.push(part, &document, buffer, input, table)?;
+            self.push(part, &document, buffer, &placings, input, table)?;
         }
         Ok(Step::Done)
     }
 
     fn faces(&self) -> u64 {
-        self.faces
+        self.count
+    }
+
+    fn waits_for_faces(&self) -> bool {
+        self.faces.is_some()
+    }
+
+    fn take_faces(&mut self) -> Option<Faces> {
+        self.faces.take()
     }
 }
 
@@ -73,6 +103,7 @@ impl Glb {
         part: &Placed,
         document: &Document,
         buffer: &[u8],
+        placings: &[Option<Placing>],
         input: &Input,
         table: &mut Table,
     ) -> Result<()> {
@@ -94,15 +125,22 @@ impl Glb {
                 return Err(input.bad_byte(20, &expected, other.count.to_string()));
             }
         }
-        if part.primitive.mode.unwrap_or(4) == 4 {
-            let corners = match part.primitive.indices {
-                Some(index) => Accessor::open(document, index, buffer, input)?.count,
-                None => positions.count,
-            };
-            self.faces += corners as u64 / 3;
-        }
+        let indices = match part.primitive.indices {
+            Some(index) => Some(Accessor::open(document, index, buffer, input)?),
+            None => None,
+        };
+        let corners = indices
+            .as_ref()
+            .map_or(positions.count, |indices| indices.count);
+        let mode = part.primitive.mode.unwrap_or(TRIANGLES);
+        self.count += match mode {
+            TRIANGLES => corners as u64 / 3,
+            STRIP | FAN => (corners as u64).saturating_sub(2),
+            _ => 0,
+        };
+        let first = table.next_row() as u32;
         for i in 0..positions.count {
-            let mut row = [0.0; 9];
+            let mut row = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
             row[..3].copy_from_slice(&part.transform.point(positions.triple(i)));
             if let Some(normals) = &normals {
                 row[3..6].copy_from_slice(&part.transform.normal(normals.triple(i)));
@@ -112,18 +150,59 @@ impl Glb {
             }
             table.push(&row);
         }
+        let Some(faces) = &mut self.faces else {
+            return Ok(());
+        };
+        let look = part.primitive.material;
+        let placing = look.and_then(|look| placings.get(look)?.as_ref());
+        let places = match placing {
+            Some(placing) => open(&format!("TEXCOORD_{}", placing.set))?,
+            None => None,
+        };
+        let place = |i: usize| match (placing, &places) {
+            (Some(placing), Some(places)) if i < places.count => placing.place(places.triple(i)),
+            _ => [0.0; 2],
+        };
+        faces.places.extend((0..positions.count).map(place));
+        let row = |corner: usize| {
+            let i = indices
+                .as_ref()
+                .map_or(corner, |indices| indices.triple(corner)[0] as usize);
+            // A vertex that the part has not is none of the file.
+            if i < positions.count {
+                first + i as u32
+            } else {
+                NONE
+            }
+        };
+        let mirrored = part.transform.mirrors();
+        let mut push = |[a, b, c]: [usize; 3]| {
+            let [a, b, c] = [row(a), row(b), row(c)];
+            let rows = if mirrored { [a, c, b] } else { [a, b, c] };
+            let look = look.map(|look| look as u32);
+            faces.push(
+                Face {
+                    rows: &rows,
+                    look,
+                    ..Face::default()
+                },
+                |_| None,
+            );
+        };
+        match mode {
+            TRIANGLES => (0..corners / 3).for_each(|i| push([3 * i, 3 * i + 1, 3 * i + 2])),
+            STRIP => (2..corners).for_each(|i| push([i - 2, i - 1 + i % 2, i - i % 2])),
+            FAN => (2..corners).for_each(|i| push([0, i - 1, i])),
+            _ => {}
+        }
         Ok(())
     }
 }
 
-/// A share of linear light, which vertex colours of glTF are, as a share of the display's scale.
-fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
-}
+/// Modes of primitives that have triangles.
+const TRIANGLES: u32 = 4;
+const STRIP: u32 = 5;
+const FAN: u32 = 6;
 
 /// The file's two chunks: its description, and its data.
 fn chunks<'a>(input: &Input<'a>) -> Result<(Document, &'a [u8])> {

@@ -114,6 +114,16 @@ impl<'a> Input<'a> {
         Ok(Some(line))
     }
 
+    /// Where the input is, for [`Input::go_back`].
+    pub(super) fn mark(&self) -> (&'a [u8], Place) {
+        (self.bytes, self.place)
+    }
+
+    /// Gives back all that was taken since.
+    pub(super) fn go_back(&mut self, (bytes, place): (&'a [u8], Place)) {
+        (self.bytes, self.place) = (bytes, place);
+    }
+
     /// Gives back the last byte of a line's end that was two: it was not the line's.
     pub(super) fn put_back_line_feed(&mut self, whole: &'a [u8]) {
         self.bytes = &whole[whole.len() - self.bytes.len() - 1..];
@@ -122,12 +132,17 @@ impl<'a> Input<'a> {
 
     /// The line taken last is wrong.
     pub(super) fn bad_line(&self, expected: &str, found: &[u8]) -> Error {
+        self.bad_value(self.place.line, expected, found)
+    }
+
+    /// A value of an earlier line is wrong.
+    pub(super) fn bad_value(&self, line: u64, expected: &str, found: &[u8]) -> Error {
         let found = if found.is_empty() {
             "nothing".into()
         } else {
             quote(found)
         };
-        self.bad("line", self.place.line, expected, found)
+        self.bad("line", line, expected, found)
     }
 
     /// An earlier line is wrong.

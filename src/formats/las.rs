@@ -1,20 +1,27 @@
 //! LAS 1.0 to 1.4 and LAZ (ASPRS; LASzip by Martin Isenburg), by the crates `las` and `laz`. Coordinates are the file's, scale
-//! and offset applied in double precision. Attributes are `intensity`, `classification` and, where the file has it, `nir`;
-//! colours of 16 bits become 8, and those that are all 0 are none. Times are left out: single precision does not hold
-//! them.
+//! and offset applied in double precision. Attributes are `intensity` and `classification`, the other fields where one is not 0, and
+//! the extra bytes that the file describes, scaled. Colours of 16 bits become 8, and those that are all 0 are none. Times
+//! are counted from the first point's, because single precision does not hold them; those of LAZ in layers (point
+//! formats 6 to 10) are left out. A header that says 0 points, as loggers leave it that never finish, is not believed where
+//! points follow.
 //!
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
+mod crs;
+mod fields;
 mod laz;
 mod time;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use crate::base::error::Result;
+use crate::cloud::Crs;
 use ::las::point::Format;
 use ::las::raw;
+use fields::{ALWAYS, Extra, FIELDS};
 use laz::Laz;
 
 /// The longest of the headers.
@@ -23,9 +30,13 @@ const HEADER: usize = 375;
 /// Reads the points.
 #[derive(Default)]
 pub(super) struct Las {
+    crs: Option<Crs>,
     header: Option<Header>,
     laz: Option<Laz>,
     row: u64,
+    /// Time of the first point.
+    start: Option<f64>,
+    values: Vec<f64>,
 }
 
 impl Parser for Las {
@@ -36,7 +47,14 @@ impl Parser for Las {
                 if input.rest().len() < HEADER && !input.last {
                     return Ok(Step::More);
                 }
-                self.header.insert(Header::read(input)?)
+                let header = Header::read(input)?;
+                // Up to the points the variable length records are wanted, too.
+                let wanted = header.start.min(input.size);
+                if (input.rest().len() as u64) < wanted && !input.last {
+                    return Ok(Step::More);
+                }
+                self.crs = crs::read(&header, input.rest());
+                self.header.insert(header.with_extras(input))
             }
         };
         let table = table.get_or_insert_with(|| {
@@ -56,7 +74,10 @@ impl Parser for Las {
                 None => self.laz.insert(Laz::open(header, input)?),
             };
             let left = header.points - self.row;
-            self.row += laz.read_chunk(input, left, |record| header.push(record, table))?;
+            let (start, row) = (&mut self.start, &mut self.values);
+            self.row += laz.read_chunk(input, left, |record| {
+                header.push(record, start, row, table);
+            })?;
             return Ok(if self.row == header.points {
                 Step::Done
             } else {
@@ -73,10 +94,22 @@ impl Parser for Las {
                     Ok(Step::More)
                 };
             };
-            header.push(record, table);
+            header.push(record, &mut self.start, &mut self.values, table);
             self.row += 1;
         }
         Ok(Step::Done)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        self.crs.clone()
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let start = self.start.filter(|start| *start != 0.0);
+        start
+            .map(|start| format!("The attribute gps_time counts the seconds from {start}."))
+            .into_iter()
+            .collect()
     }
 }
 
@@ -95,6 +128,7 @@ struct Header {
     record: usize,
     scale: [f64; 3],
     offset: [f64; 3],
+    extras: Vec<Extra>,
 }
 
 impl Header {
@@ -153,6 +187,10 @@ impl Header {
                 format!("{scale:?} and {offset:?}"),
             ));
         }
+        let points = match points {
+            0 if !packed => unfinished(&header, input.size),
+            points => points,
+        };
         // Without points it does not matter where they start.
         let room = input.size.saturating_sub(start);
         if points > 0 && (start < 227 || room == 0) {
@@ -190,48 +228,78 @@ impl Header {
             record,
             scale,
             offset,
+            extras: Vec::new(),
         })
+    }
+
+    /// With what the file says of the points' extra bytes.
+    fn with_extras(mut self, input: &Input) -> Header {
+        let room = self.record - usize::from(self.format.len());
+        if room > 0 {
+            self.extras = fields::extras(input, self.start, self.records_start, self.records, room);
+        }
+        self
     }
 
     /// The columns of the rows that [`Header::push`] makes.
     fn columns(&self) -> Columns {
-        let mut scalars = vec![(6, "intensity".into()), (7, "classification".into())];
-        if self.format.has_nir {
-            scalars.push((8, "nir".into()));
-        }
+        let extras = self.extras.iter().map(|extra| extra.name.as_str());
+        let names = FIELDS.into_iter().chain(extras);
+        let scalars = names.enumerate().map(|(i, name)| (6 + i, name.into()));
+        // Those that are described are wanted even where all are 0.
+        let (fields, extras): (Vec<_>, Vec<_>) = scalars.partition(|(i, _)| *i < 6 + FIELDS.len());
+        let (always, optional) = fields.split_at(ALWAYS);
+        let mut scalars = always.to_vec();
+        scalars.extend(extras);
+        let optional_from = scalars.len();
+        scalars.extend(optional.iter().cloned());
         Columns {
-            position: [0, 1, 2],
-            normal: None,
             color: self.format.has_color.then_some([3, 4, 5]),
             scalars,
+            optional_from,
             colors: ColorRange::Integers,
             precision: Precision::Double,
+            ..Columns::xyz()
         }
     }
 
     /// A record as a row.
-    fn push(&self, record: &[u8], table: &mut Table) {
+    fn push(&self, record: &[u8], start: &mut Option<f64>, row: &mut Vec<f64>, table: &mut Table) {
         // The record is as long as the format, or longer: it can be read.
         let Ok(point) = raw::Point::read_from(record, &self.format) else {
             return;
         };
         let [x, y, z] = [point.x, point.y, point.z].map(f64::from);
         let color = point.color.unwrap_or_default();
-        let class = match point.flags {
-            raw::point::Flags::TwoByte(_, flags) => flags & 31,
-            raw::point::Flags::ThreeByte(_, _, class) => class,
-        };
+        if start.is_none() {
+            *start = point.gps_time.filter(|time| time.is_finite());
+        }
         table.colors_said |= [color.red, color.green, color.blue] != [0; 3];
-        table.push(&[
+        row.clear();
+        row.extend([
             x * self.scale[0] + self.offset[0],
             y * self.scale[1] + self.offset[1],
             z * self.scale[2] + self.offset[2],
             f64::from(color.red),
             f64::from(color.green),
             f64::from(color.blue),
-            f64::from(point.intensity),
-            f64::from(class),
-            f64::from(point.nir.unwrap_or(0)),
         ]);
+        row.extend(fields::values(&point, start.unwrap_or(0.0)));
+        let extra = |extra: &Extra| extra.value(&point.extra_bytes);
+        row.extend(self.extras.iter().map(extra));
+        table.push(row);
+    }
+}
+
+/// Points behind a header that says 0 of them: the whole records up to the end, or to what the header says follows.
+fn unfinished(header: &raw::Header, size: u64) -> u64 {
+    let start = u64::from(header.offset_to_point_data);
+    let follows = header.evlr.map(|evlr| evlr.start_of_first_evlr);
+    let end = follows.filter(|end| *end > start).unwrap_or(size).min(size);
+    let record = u64::from(header.point_data_record_length).max(1);
+    if start < 227 {
+        0
+    } else {
+        end.saturating_sub(start) / record
     }
 }

@@ -8,15 +8,24 @@
 
 // A build with one feature's readers leaves parts unused of what they share.
 #![cfg_attr(
-    not(all(feature = "e57", feature = "files", feature = "las")),
-    allow(dead_code)
+    not(all(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )),
+    allow(dead_code, unused_variables)
 )]
 
+mod colors;
 mod detect;
 #[cfg(feature = "e57")]
 mod e57;
-#[cfg(feature = "files")]
+mod faces;
+#[cfg(feature = "packed")]
 mod glb;
+#[cfg(feature = "files")]
+mod grid;
 mod input;
 #[cfg(feature = "las")]
 mod las;
@@ -30,8 +39,18 @@ mod off;
 mod pcd;
 #[cfg(feature = "files")]
 mod ply;
+mod pictures;
 mod reading;
 mod stations;
+mod options;
+#[cfg(feature = "packed")]
+mod packed;
+mod preview;
+#[cfg(feature = "files")]
+mod ptx;
+mod sentinels;
+#[cfg(any(feature = "files", feature = "packed"))]
+mod splats;
 #[cfg(feature = "files")]
 mod stl;
 mod table;
@@ -41,10 +60,17 @@ mod write;
 mod xyz;
 
 use crate::base::error::{Error, Result};
-use crate::cloud::{Attribute, Cloud, Viewpoints};
+use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
 use crate::pipeline::Surface;
 pub use detect::detect;
+pub use faces::{FaceMode, Picture, Sampling, Want};
+pub use options::ReadOptions;
+#[cfg(feature = "packed")]
+pub use packed::{Archive, Entry};
+pub use pictures::decode as decode_picture;
+pub use preview::Preview;
 pub use reading::{Reading, Summary};
+pub use sentinels::LeftOut;
 pub use stations::{Run, Stations};
 pub use table::{Block, ColorValues, Verdict};
 pub use write::{Output, WriteOptions, write};
@@ -70,11 +96,23 @@ pub enum Format {
     Las,
     /// ASTM E2807.
     E57,
+    /// Leica's PTX: scans as text, each at its pose.
+    Ptx,
+    /// ESRI's ASCII raster: an elevation grid.
+    Grid,
+    /// GeoTIFF with one band: an elevation grid.
+    Tiff,
+    /// 3MF: its vertices.
+    ThreeMf,
+    /// Gaussian splats of 32 bytes: their centres.
+    Splat,
+    /// Gaussian splats, packed: their centres.
+    Spz,
 }
 
 impl Format {
     /// All formats that are read.
-    pub const ALL: [Format; 9] = [
+    pub const ALL: [Format; 15] = [
         Format::Ply,
         Format::Xyz,
         Format::Pcd,
@@ -84,6 +122,12 @@ impl Format {
         Format::Glb,
         Format::Las,
         Format::E57,
+        Format::Ptx,
+        Format::Grid,
+        Format::Tiff,
+        Format::ThreeMf,
+        Format::Splat,
+        Format::Spz,
     ];
     /// Those that are written, too, and read back to the same bits.
     pub const WRITTEN: [Format; 2] = [Format::Ply, Format::Xyz];
@@ -105,6 +149,12 @@ impl Format {
             Format::Glb => "GLB",
             Format::Las => "LAS",
             Format::E57 => "E57",
+            Format::Ptx => "PTX",
+            Format::Grid => "ASCII grid",
+            Format::Tiff => "GeoTIFF",
+            Format::ThreeMf => "3MF",
+            Format::Splat => "splat",
+            Format::Spz => "SPZ",
         }
     }
 
@@ -120,12 +170,39 @@ impl Format {
             Format::Glb => &["glb"],
             Format::Las => &["las", "laz"],
             Format::E57 => &["e57"],
+            Format::Ptx => &["ptx"],
+            // Those that end with .asc are told from rows of points by their content.
+            Format::Grid => &["grid", "agr", "grd"],
+            Format::Tiff => &["tif", "tiff"],
+            Format::ThreeMf => &["3mf"],
+            Format::Splat => &["splat"],
+            Format::Spz => &["spz"],
         }
     }
 
     /// Whether its clouds are airborne scans: z is up, and all was seen from above.
     pub fn is_airborne(self) -> bool {
         self == Format::Las
+    }
+
+    /// Which way is up, where the format says it.
+    pub fn up(self) -> Option<[f64; 3]> {
+        match self {
+            Format::Las | Format::E57 | Format::ThreeMf => Some([0.0, 0.0, 1.0]),
+            Format::Glb => Some([0.0, 1.0, 0.0]),
+            _ => None,
+        }
+    }
+
+    /// What a coordinate is, where the format says it; of LAS and LAZ the file may.
+    pub fn unit(self) -> Option<Unit> {
+        matches!(self, Format::E57 | Format::Glb).then_some(Unit::Metre)
+    }
+
+    /// Whether it starts with text, before which editors put a byte order mark.
+    fn is_text(self) -> bool {
+        use Format::{Grid, Obj, Off, Pcd, Ply, Ptx, Stl, Xyz};
+        matches!(self, Ply | Xyz | Pcd | Obj | Off | Stl | Ptx | Grid)
     }
 
     /// The format of a name (`ply`), an extension (`PTS`) or a file name (`scan.csv`).
@@ -187,12 +264,24 @@ pub struct RawCloud {
     pub up: Option<[f64; 3]>,
     /// Whether all was seen from above, as airborne scans are.
     pub seen_from_above: bool,
+    /// What a coordinate is.
+    pub unit: Option<Unit>,
+    /// The reference system of world coordinates.
+    pub crs: Option<Crs>,
     /// Rows left out because a coordinate was NaN or infinite.
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
-    /// Faces that the file says it has; they are not read.
+    /// Faces that the file says it has.
     pub faces: u64,
+    /// What was made of them.
+    pub sampling: Sampling,
+    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`. The first two are `dropped`.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// What the columns of a table of text were taken for, as [`ReadOptions::columns`] says it.
+    pub columns: Vec<String>,
+    /// What else is to be said of the points, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl RawCloud {
@@ -207,9 +296,15 @@ impl RawCloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            unit: None,
+            crs: None,
             dropped: 0,
             replaced: 0,
             faces: 0,
+            sampling: Sampling::default(),
+            skipped: Vec::new(),
+            columns: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -226,12 +321,15 @@ impl RawCloud {
             viewpoints: cloud.viewpoints.clone(),
             up: cloud.up.map(|up| up.as_dvec3().to_array()),
             seen_from_above: cloud.seen_from_above,
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(cloud.positions_f64()))
         }
     }
 
     /// The vertices of a mesh, in double precision; its triangles are [`Surface::indices`].
     pub fn of_surface(surface: &Surface) -> RawCloud {
+        let cloud = &surface.cloud.reduced.cloud;
         RawCloud {
             colors: surface.colors.as_ref().map(|c| c.as_flattened().to_vec()),
             normals: Some(
@@ -243,7 +341,10 @@ impl RawCloud {
                     .collect(),
             ),
             attributes: surface.attributes.clone(),
-            origin: surface.cloud.reduced.cloud.origin,
+            origin: cloud.origin,
+            up: cloud.up.map(|up| up.as_dvec3().to_array()),
+            unit: cloud.unit,
+            crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(surface.positions_f64()))
         }
     }
@@ -279,6 +380,14 @@ impl RawCloud {
             cloud = cloud.with_up(up)?;
         }
         cloud.origin = self.origin;
+        cloud.unit = self.unit;
+        cloud.crs = self.crs.clone();
+        // Points of faces are no measurements, and the results say so.
+        cloud.faces = if self.sampling.points > 0 {
+            self.faces
+        } else {
+            0
+        };
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 
@@ -311,10 +420,37 @@ impl RawCloud {
     }
 }
 
-/// Reads a file that is wholly in memory.
+/// Reads a file that is wholly in memory; of a file with faces its vertices.
 ///
 /// # Errors
 /// [`Error::BadFile`] with the line or byte, [`Error::UnsupportedFile`].
 pub fn read(bytes: &[u8], format: Format) -> Result<RawCloud> {
-    Reading::new(Some(format), None, bytes.len() as u64).whole(bytes)
+    let options = ReadOptions {
+        faces: FaceMode::Vertices,
+        ..ReadOptions::default()
+    };
+    read_with(bytes, format, &options)
+}
+
+/// [`read`], with what the caller says of the file; of a file with faces points are taken from them unless told otherwise.
+///
+/// # Errors
+/// Those of [`read`], and [`Error::BadOption`].
+pub fn read_with(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<RawCloud> {
+    read_beside(bytes, format, options, &mut |_| None)
+}
+
+/// [`read_with`], where `beside` gives the content of files that faces name: of an OBJ file its material library and pictures.
+///
+/// # Errors
+/// The same.
+pub fn read_beside(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+    beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<RawCloud> {
+    Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(options.clone())?
+        .whole(bytes, beside)
 }

@@ -2,17 +2,21 @@
 //! fourth value alone is a weight and is passed over, as is one after a colour.
 //!
 //! Normals (`vn`) are taken where they are the vertices' own: as many, and every face that names any has vertex and normal
-//! of the same number. All else is passed over; faces are counted. Vertices without a colour, in a file where others have
+//! of the same number. Faces are counted, or taken apart where points are taken from them. All else is passed over. Vertices without a colour, in a file where others have
 //! one, are white.
 //!
 //! Why not a crate: `tobj` and `obj` read meshes, give up a file for its faces or materials, and know of no place for an
 //! error.
 
+mod faces;
+
+use super::faces::Faces;
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Table};
 use super::text::{number, words};
 use crate::base::error::Result;
+use faces::ObjFaces;
 
 /// Whether the first line that is no comment is one of an OBJ file.
 pub(super) fn looks_like(head: &[u8]) -> bool {
@@ -48,6 +52,17 @@ pub(super) struct Obj {
     /// A face has a normal that is not its vertex's.
     normals_apart: bool,
     faces: u64,
+    /// Where they are wanted.
+    taken: Option<ObjFaces>,
+}
+
+impl Obj {
+    pub(super) fn new(faces: Option<Faces>) -> Obj {
+        Obj {
+            taken: faces.map(ObjFaces::new),
+            ..Obj::default()
+        }
+    }
 }
 
 impl Parser for Obj {
@@ -60,6 +75,7 @@ impl Parser for Obj {
         let table = table.get_or_insert_with(|| {
             let mut table = Table::new(columns(), None);
             table.colors_said = false;
+            table.gone = self.taken.is_some().then(Vec::new);
             table
         });
         while let Some(line) = input.line()? {
@@ -95,6 +111,14 @@ impl Parser for Obj {
     fn faces(&self) -> u64 {
         self.faces
     }
+
+    fn waits_for_faces(&self) -> bool {
+        self.taken.is_some()
+    }
+
+    fn take_faces(&mut self) -> Option<Faces> {
+        self.taken.take().map(ObjFaces::finish)
+    }
 }
 
 impl Obj {
@@ -127,8 +151,12 @@ impl Obj {
                         as f32;
                 }
                 let finite = normal.iter().all(|x| x.is_finite());
+                let normal = if finite { normal } else { [0.0; 3] };
                 self.normals += 1;
-                table.push_normal(if finite { normal } else { [0.0; 3] });
+                table.push_normal(normal);
+                if let Some(taken) = &mut self.taken {
+                    taken.faces.normals.push(normal);
+                }
             }
             Some(b"f") => {
                 self.faces += 1;
@@ -137,8 +165,16 @@ impl Obj {
                     let vertex = indices.next();
                     indices.nth(1).is_some_and(|normal| Some(normal) != vertex)
                 });
+                if let Some(taken) = &mut self.taken {
+                    taken.face(line, table);
+                }
             }
-            _ => {}
+            Some(key) => {
+                if let Some(taken) = &mut self.taken {
+                    taken.other(key, line);
+                }
+            }
+            None => {}
         }
         Ok(())
     }
@@ -146,11 +182,7 @@ impl Obj {
 
 fn columns() -> Columns {
     Columns {
-        position: [0, 1, 2],
-        normal: None,
         color: Some([3, 4, 5]),
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
-        precision: Precision::AsNeeded,
+        ..Columns::xyz()
     }
 }

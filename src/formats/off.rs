@@ -1,6 +1,7 @@
 //! OFF (Geomview, 1996), as text: `OFF`, before it `C` for colours, `N` for normals, `ST` for texture; the counts of vertices
 //! and faces; then a vertex a line. Colours may follow the coordinates without the `C`, too. Comments start with `#`.
 
+use super::faces::{Face, Faces, NONE};
 use super::input::Input;
 use super::reading::{Parser, Step};
 use super::table::{Columns, Table};
@@ -10,9 +11,16 @@ use crate::base::error::Result;
 /// Whether the first line that is no comment starts as an OFF file does.
 pub(super) fn looks_like(head: &[u8]) -> bool {
     head.split(|&b| b == b'\n' || b == b'\r')
-        .filter_map(|line| words(without_comment(line)).next())
-        .next()
+        .map(|line| first_word(without_comment(line)))
+        .find(|word| !word.is_empty())
         .is_some_and(|word| Kind::of(word).is_some())
+}
+
+/// The first word, without a count that is not kept apart from it: `OFF240 0 0`, as in ModelNet.
+fn first_word(line: &[u8]) -> &[u8] {
+    let word = words(line).next().unwrap_or_default();
+    let digits = word.iter().rev().take_while(|b| b.is_ascii_digit()).count();
+    &word[..word.len() - digits]
 }
 
 /// What the first word says that each vertex has.
@@ -53,15 +61,27 @@ pub(super) struct Off {
     /// Values a vertex.
     width: usize,
     values: Vec<f64>,
+    /// Faces so far, and what they are where they are wanted.
+    face: u64,
+    faces: Option<Faces>,
+}
+
+impl Off {
+    pub(super) fn new(faces: Option<Faces>) -> Off {
+        Off {
+            faces,
+            ..Off::default()
+        }
+    }
 }
 
 impl Parser for Off {
     fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
         loop {
-            if self
-                .counts
-                .is_some_and(|[vertices, _]| self.row >= vertices)
-            {
+            let is_done = |[vertices, faces]: [u64; 2]| {
+                self.row >= vertices && (self.faces.is_none() || self.face >= faces)
+            };
+            if self.counts.is_some_and(is_done) {
                 return Ok(Step::Done);
             }
             let Some(line) = input.line()? else {
@@ -81,6 +101,14 @@ impl Parser for Off {
     fn faces(&self) -> u64 {
         self.counts.map_or(0, |[_, faces]| faces)
     }
+
+    fn waits_for_faces(&self) -> bool {
+        self.faces.is_some()
+    }
+
+    fn take_faces(&mut self) -> Option<Faces> {
+        self.faces.take()
+    }
 }
 
 impl Off {
@@ -88,14 +116,17 @@ impl Off {
         match (self.kind, self.counts) {
             (None, _) => "\"OFF\"".into(),
             (_, None) => "the counts of vertices and faces".into(),
-            (_, Some([vertices, _])) => format!("one of {vertices} vertices"),
+            (_, Some([vertices, _])) if self.row < vertices => {
+                format!("one of {vertices} vertices")
+            }
+            (_, Some([_, faces])) => format!("one of {faces} faces"),
         }
     }
 
     fn line(&mut self, line: &[u8], input: &Input, table: &mut Option<Table>) -> Result<()> {
         let mut rest = line;
         if self.kind.is_none() {
-            let word = words(line).next().unwrap_or_default();
+            let word = first_word(line);
             self.kind = Some(Kind::of(word).ok_or_else(|| input.bad_line("\"OFF\"", line))?);
             rest = line[word.len()..].trim_ascii();
             if rest == b"BINARY" {
@@ -126,6 +157,15 @@ impl Off {
             self.values
                 .push(number(word).ok_or_else(|| input.bad_line("a number", word))?);
         }
+        if let (Some([vertices, _]), Some(table)) = (self.counts, &table)
+            && self.row >= vertices
+        {
+            self.face += 1;
+            if let Some(faces) = &mut self.faces {
+                push_face(&self.values, faces, table);
+            }
+            return Ok(());
+        }
         let table = match table {
             Some(table) => table,
             None => {
@@ -136,7 +176,9 @@ impl Off {
                 let vertices = self.counts.map_or(0, |[vertices, _]| vertices);
                 // A digit and its separator for each coordinate, and this line is taken already.
                 let most = vertices.min(input.left() / 6 + 2);
-                table.insert(Table::new(columns, Some(most)))
+                let table = table.insert(Table::new(columns, Some(most)));
+                table.gone = self.faces.is_some().then(Vec::new);
+                table
             }
         };
         if self.values.len() != self.width {
@@ -167,6 +209,30 @@ impl Off {
         columns.scalars.clear();
         Some(columns)
     }
+}
+
+/// A face: how many corners, which, and a colour, of bytes or from 0 to 1.
+fn push_face(values: &[f64], faces: &mut Faces, table: &Table) {
+    let count = values.first().map_or(0, |&count| count as usize);
+    let row = |&x: &f64| if x >= 0.0 { x as u32 } else { NONE };
+    let rows: Vec<u32> = values.iter().skip(1).take(count).map(row).collect();
+    let color = match values.get(count.saturating_add(1)..) {
+        Some(&[r, g, b]) | Some(&[r, g, b, _]) => {
+            let scale = if [r, g, b].iter().all(|&c| c <= 1.0) {
+                255.0
+            } else {
+                1.0
+            };
+            Some([r, g, b].map(|c| (scale * c).round() as u8))
+        }
+        _ => None,
+    };
+    let face = Face {
+        rows: &rows,
+        color,
+        ..Face::default()
+    };
+    faces.push(face, |row| table.position(row));
 }
 
 /// A line up to its comment.

@@ -11,10 +11,11 @@
 
 mod picture;
 
+use super::colors::ColorRange;
 use super::input::Input;
 use super::lzf;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use super::text::number;
 use crate::base::error::Result;
 use picture::Picture;
@@ -267,7 +268,7 @@ fn columns(fields: &[Field], encoding: Encoding) -> Option<Columns> {
 fn packed_color(fields: &[Field]) -> Option<usize> {
     let packs = |field: &Field| {
         ["rgb", "rgba"].contains(&field.name.to_lowercase().as_str())
-            && field.size == 4
+            && field.size >= 4
             && field.count == 1
     };
     fields.iter().position(packs)
@@ -349,12 +350,7 @@ impl Body {
                     }
                 }
                 if self.color == Some(i) {
-                    // As a float the text is that of the number whose bits are the colour.
-                    packed = Some(if field.kind == Kind::Float {
-                        (first as f32).to_bits()
-                    } else {
-                        first as i64 as u32
-                    });
+                    packed = Some(unpacked(field, first, (first as f32).to_bits()));
                 }
                 self.values.push(first);
             }
@@ -447,16 +443,18 @@ impl Body {
         let mut packed = None;
         for (i, field) in self.fields.iter().enumerate() {
             let bytes = next(field);
-            if self.color == Some(i)
-                && let &[a, b, c, d] = bytes
-            {
-                packed = Some(u32::from_le_bytes([a, b, c, d]));
-            }
-            self.values.push(if field.count == 0 {
+            let first = if field.count == 0 {
                 0.0
             } else {
                 value(field, bytes)
-            });
+            };
+            if self.color == Some(i) {
+                packed = Some(match *bytes {
+                    [a, b, c, d] => unpacked(field, first, u32::from_le_bytes([a, b, c, d])),
+                    _ => unpacked(field, first, (first as f32).to_bits()),
+                });
+            }
+            self.values.push(first);
         }
         self.push(packed, table);
     }
@@ -472,6 +470,17 @@ impl Body {
         }
         table.push(&self.values);
         self.row += 1;
+    }
+}
+
+/// The colour that a value packs: its integer, or, of a float, its `bits`. Some programs write the integer as a float's value: it
+/// is whole and not tiny, as the bits of no colour are without transparency or with all of it.
+fn unpacked(field: &Field, value: f64, bits: u32) -> u32 {
+    let is_integer = (1.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;
+    if field.kind == Kind::Float && !is_integer {
+        bits
+    } else {
+        value as i64 as u32
     }
 }
 

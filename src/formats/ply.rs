@@ -3,18 +3,23 @@
 //! Read are all three encodings, all scalar types in both spellings, list properties in any element, elements in any
 //! order, comments and `obj_info` anywhere in the header, and any end of line. The points are the element `vertex`, or
 //! else the first element with x, y and z. Normals are `nx ny nz`, colours `red green blue` (bytes, 16 bits, or floats
-//! from 0 to 1); every other scalar is an attribute, lists are passed over. Elements after the points are not looked at.
+//! from 0 to 1); every other scalar is an attribute, lists are passed over. Elements after the points are looked at where
+//! points are taken from faces.
 //!
 //! Why not a crate: `ply-rs-bw`, the one that is kept up, makes a map from property name to value for every row, or
 //! calls back with the name for every value, and reports errors as text. Here columns and the line or byte are wanted.
 
+mod faces;
 mod header;
 
+use super::faces::Faces;
 use super::input::Input;
 use super::reading::{Parser, Step};
+use super::splats::SPLATS;
 use super::table::Table;
 use super::text::{number, words};
 use crate::base::error::Result;
+use faces::{Layout, Lists};
 use header::{Element, Encoding, Header, HeaderLines, Property};
 
 /// Whether the content starts as a PLY file does.
@@ -31,6 +36,17 @@ pub(super) fn looks_like(head: &[u8]) -> bool {
 pub(super) struct Ply {
     header: HeaderLines,
     rows: Option<Rows>,
+    /// Where they are wanted.
+    faces: Option<Faces>,
+}
+
+impl Ply {
+    pub(super) fn new(faces: Option<Faces>) -> Ply {
+        Ply {
+            faces,
+            ..Ply::default()
+        }
+    }
 }
 
 impl Parser for Ply {
@@ -44,20 +60,42 @@ impl Parser for Ply {
                 let (points, columns) = header.points(input)?;
                 let most = header.most_rows(points, input);
                 *table = Some(Table::new(columns, Some(most)));
+                let has_faces =
+                    |element: &Element| Layout::of(element).is_some() && element.rows > 0;
+                let last = match &mut self.faces {
+                    Some(faces) => {
+                        faces::looks(&header, faces);
+                        header.elements.iter().rposition(has_faces)
+                    }
+                    None => None,
+                };
+                if last.is_none() {
+                    self.faces = None;
+                } else if let Some(table) = table {
+                    table.gone = Some(Vec::new());
+                }
                 self.rows.insert(Rows {
                     header,
                     points,
+                    last: last.unwrap_or(0).max(points),
                     element: 0,
                     row: 0,
                     skipped: 0,
                     values: Vec::new(),
+                    lists: Lists::default(),
                 })
             }
         };
         match table {
-            Some(table) => rows.read(input, table),
+            Some(table) => rows.read(input, table, &mut self.faces),
             None => Ok(Step::Done),
         }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let is_splats = |rows: &Rows| rows.header.elements[rows.points].is_splats();
+        let splats = self.rows.iter().any(is_splats);
+        splats.then(|| SPLATS.to_string()).into_iter().collect()
     }
 
     fn faces(&self) -> u64 {
@@ -68,34 +106,60 @@ impl Parser for Ply {
             .next()
             .unwrap_or(0)
     }
+
+    fn waits_for_faces(&self) -> bool {
+        self.faces.is_some()
+    }
+
+    fn take_faces(&mut self) -> Option<Faces> {
+        self.faces.take()
+    }
 }
 
-/// The rows of the elements up to the points.
+/// The rows of the elements up to the points, and to the faces where they are wanted.
 struct Rows {
     header: Header,
-    /// Which element the points are.
+    /// Which element the points are, and which is the last that matters.
     points: usize,
+    last: usize,
     /// The element whose rows come next, and how many of its rows, or of its bytes, have been.
     element: usize,
     row: u64,
     skipped: u64,
     values: Vec<f64>,
+    lists: Lists,
 }
 
 impl Rows {
     /// Reads what is at hand.
-    fn read(&mut self, input: &mut Input, table: &mut Table) -> Result<Step> {
-        while self.element <= self.points {
+    fn read(
+        &mut self,
+        input: &mut Input,
+        table: &mut Table,
+        faces: &mut Option<Faces>,
+    ) -> Result<Step> {
+        while self.element <= self.last {
             let element = &self.header.elements[self.element];
             let points = self.element == self.points;
+            let layout = faces
+                .as_mut()
+                .and_then(|faces| Some((Layout::of(element)?, faces)));
+            let cells = (&mut self.values, &mut self.lists);
             if points {
+                self.row += read_rows(&self.header, element, self.row, cells, input, |row, _| {
+                    table.push(row)
+                })?;
+            } else if let Some((layout, faces)) = layout {
+                let known = (self.element > self.points).then_some(&*table);
                 self.row += read_rows(
                     &self.header,
                     element,
                     self.row,
-                    &mut self.values,
+                    cells,
                     input,
-                    |row| table.push(row),
+                    |row, lists| {
+                        layout.push(row, lists, faces, known);
+                    },
                 )?;
             } else if let Some(size) = element.fixed_size(self.header.encoding) {
                 let total = size.saturating_mul(element.rows);
@@ -109,14 +173,7 @@ impl Rows {
                 }
                 self.row = element.rows;
             } else {
-                self.row += read_rows(
-                    &self.header,
-                    element,
-                    self.row,
-                    &mut self.values,
-                    input,
-                    |_| (),
-                )?;
+                self.row += read_rows(&self.header, element, self.row, cells, input, |_, _| ())?;
             }
             if self.row < element.rows {
                 return Ok(Step::More);
@@ -132,9 +189,9 @@ fn read_rows(
     header: &Header,
     element: &Element,
     read: u64,
-    values: &mut Vec<f64>,
+    (values, lists): (&mut Vec<f64>, &mut Lists),
     input: &mut Input,
-    mut row: impl FnMut(&[f64]),
+    mut row: impl FnMut(&[f64], &Lists),
 ) -> Result<u64> {
     if element.properties.is_empty() {
         return Ok(element.rows);
@@ -142,21 +199,29 @@ fn read_rows(
     let mut count = 0;
     while read + count < element.rows {
         values.clear();
+        lists.clear();
+        let big_endian = header.encoding == Encoding::BigEndian;
         let whole = match header.encoding {
-            Encoding::Ascii => read_text_row(element, input, values)?,
-            encoding => read_binary_row(element, encoding == Encoding::BigEndian, input, values)?,
+            Encoding::Ascii => read_text_row(element, input, values, lists)?,
+            _ => read_binary_row(element, big_endian, input, values, lists)?,
         };
         if !whole {
             break;
         }
-        row(values);
+        row(values, lists);
         count += 1;
     }
     Ok(count)
 }
 
-/// A line that is not blank: its values without its lists. `false` where it is not at hand.
-fn read_text_row(element: &Element, input: &mut Input, row: &mut Vec<f64>) -> Result<bool> {
+/// A line that is not blank: its values, and its lists. `false` where it is not at hand.
+fn read_text_row<'a>(
+    element: &Element,
+    input: &mut Input<'a>,
+    row: &mut Vec<f64>,
+    lists: &mut Lists,
+) -> Result<bool> {
+    let start = input.mark();
     let line = loop {
         match input.line()? {
             Some(line) if line.trim_ascii().is_empty() => {}
@@ -165,36 +230,61 @@ fn read_text_row(element: &Element, input: &mut Input, row: &mut Vec<f64>) -> Re
             None => return Ok(false),
         }
     };
+    let first = input.place.line;
     let mut tokens = words(line);
-    let mut next = || {
-        let token = tokens.next().ok_or_else(|| {
-            let expected = format!("{} values", element.properties.len());
-            input.bad_line(&expected, line)
-        })?;
-        number(token).ok_or_else(|| input.bad_line("a number", token))
+    // A row may go on in the next lines, where it ends with one.
+    let mut next = |input: &mut Input<'a>| loop {
+        if let Some(token) = tokens.next() {
+            let value = number(token).ok_or_else(|| input.bad_line("a number", token))?;
+            return Ok(Some(value));
+        }
+        match input.line()? {
+            Some(more) => tokens = words(more),
+            None => return Ok(None),
+        }
     };
-    for property in &element.properties {
+    let mut whole = true;
+    'row: for property in &element.properties {
+        let Some(value) = next(input)? else {
+            whole = false;
+            break;
+        };
         match property {
-            Property::One { .. } => row.push(next()?),
+            Property::One { .. } => row.push(value),
             Property::List { .. } => {
                 let items =
-                    list_length(next()?).ok_or_else(|| input.bad_line("a list's length", line))?;
-                (0..items).try_for_each(|_| next().map(|_| ()))?;
+                    list_length(value).ok_or_else(|| input.bad_line("a list's length", line))?;
+                for _ in 0..items {
+                    let Some(item) = next(input)? else {
+                        whole = false;
+                        break 'row;
+                    };
+                    lists.items.push(item);
+                }
+                lists.ends.push(lists.items.len());
             }
         }
     }
+    let short = format!("{} values", element.properties.len());
     match tokens.next() {
+        _ if !whole && !input.last => {
+            input.go_back(start);
+            Ok(false)
+        }
+        _ if !whole => Err(input.bad_value(first, &short, line)),
         None => Ok(true),
+        Some(_) if input.place.line > first => Err(input.bad_value(first, &short, line)),
         Some(token) => Err(input.bad_line("the end of the line", token)),
     }
 }
 
-/// A binary row: its values without its lists. `false` where it is not at hand.
+/// A binary row: its values, and its lists. `false` where it is not at hand.
 fn read_binary_row(
     element: &Element,
     big_endian: bool,
     input: &mut Input,
     row: &mut Vec<f64>,
+    lists: &mut Lists,
 ) -> Result<bool> {
     let here = input.rest();
     let mut at = 0;
@@ -214,13 +304,20 @@ fn read_binary_row(
                         value.to_string(),
                     )
                 })?;
-                at = at.saturating_add(items.saturating_mul(item.size()));
+                let start = at + scalar.size();
+                let length = items.saturating_mul(item.size());
+                let Some(content) = here.get(start..start.saturating_add(length)) else {
+                    return missing(input, start.saturating_add(length) as u64, element);
+                };
+                let values = content.chunks_exact(item.size());
+                lists
+                    .items
+                    .extend(values.map(|bytes| item.value(bytes, big_endian)));
+                lists.ends.push(lists.items.len());
+                at += length;
             }
         }
-        at = at.saturating_add(scalar.size());
-        if at > here.len() {
-            return missing(input, at as u64, element);
-        }
+        at += scalar.size();
     }
     Ok(input.take(at).is_some())
 }

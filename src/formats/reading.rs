@@ -1,11 +1,19 @@
 //! A file read slice by slice.
 
+use super::Preview;
+use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
 use super::input::{Input, Place};
+use super::options::ReadOptions;
+use super::sentinels::LeftOut;
 use super::table::{Block, Table, Verdict};
 use super::{Format, Positions, RawCloud, Stations, detect};
 #[cfg(feature = "files")]
-use super::{glb, obj, off, pcd, ply, stl, xyz};
+use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
+use crate::cloud::{Crs, Unit};
+
+/// The byte order mark of UTF-8.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
@@ -19,6 +27,41 @@ pub(super) trait Parser {
     /// Faces that the file has, once all was parsed.
     fn faces(&self) -> u64 {
         0
+    }
+
+    /// Whether points may come from faces: those that are there are vertices then, and no points yet.
+    fn waits_for_faces(&self) -> bool {
+        false
+    }
+
+    /// The faces over the rows of the table, once all was parsed and where they are wanted.
+    fn take_faces(&mut self) -> Option<Faces> {
+        None
+    }
+
+    /// The reference system of the coordinates.
+    fn crs(&self) -> Option<Crs> {
+        None
+    }
+
+    /// What a coordinate is, where the file says it.
+    fn unit(&self) -> Option<Unit> {
+        None
+    }
+
+    /// What the columns of a table were taken for.
+    fn columns(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The first rows of a table.
+    fn preview(&self) -> Option<Preview> {
+        None
+    }
+
+    /// What else is to be said of the points.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
     }
 }
 
@@ -37,12 +80,16 @@ pub struct Reading {
     format: Option<Format>,
     name: Option<String>,
     size: u64,
+    /// Faces that wait for what they need besides.
+    faces: Option<Faces>,
+    sampled: Sampling,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
     /// What the parser has not taken yet, and where it starts.
     kept: Vec<u8>,
     place: Place,
     done: bool,
+    options: ReadOptions,
 }
 
 /// What is known at the end of a file.
@@ -60,12 +107,26 @@ pub struct Summary {
     pub replaced: usize,
     /// As in [`RawCloud`].
     pub faces: u64,
+    /// What was made of them.
+    pub sampling: Sampling,
     /// Where the points were seen from.
     pub stations: Stations,
     /// As in [`RawCloud`].
     pub up: Option<[f64; 3]>,
     /// As in [`RawCloud`].
     pub seen_from_above: bool,
+    /// As in [`RawCloud`].
+    pub unit: Option<Unit>,
+    /// As in [`RawCloud`].
+    pub crs: Option<Crs>,
+    /// As in [`RawCloud`], but for what [`Verdict::left_out`] says.
+    pub skipped: Vec<(&'static str, u64)>,
+    /// As in [`RawCloud`].
+    pub columns: Vec<String>,
+    /// As in [`RawCloud`].
+    pub notes: Vec<String>,
+    /// The first rows of a table of text.
+    pub preview: Option<Preview>,
 }
 
 impl Reading {
@@ -75,12 +136,25 @@ impl Reading {
             format,
             name: name.map(String::from),
             size,
+            faces: None,
+            sampled: Sampling::default(),
             parser: None,
             table: None,
             kept: Vec::new(),
             place: Place::default(),
             done: false,
+            options: ReadOptions::default(),
         }
+    }
+
+    /// With what the caller says of the file.
+    ///
+    /// # Errors
+    /// [`crate::Error::BadOption`].
+    pub fn with_options(mut self, options: ReadOptions) -> Result<Reading> {
+        options.check()?;
+        self.options = options;
+        Ok(self)
     }
 
     /// The next bytes.
@@ -100,7 +174,7 @@ impl Reading {
         self.parse_kept(false)
     }
 
-    /// After the last bytes: goes on, and says whether all is read.
+    /// After the last bytes: goes on, and says whether all is read. Where it is not, [`Reading::want`] may say what is needed.
     ///
     /// # Errors
     /// The same.
@@ -108,56 +182,154 @@ impl Reading {
         if !self.done {
             self.parse_kept(true)?;
         }
-        Ok(self.done)
+        if self.done && self.want().is_none() {
+            self.sample();
+        }
+        Ok(self.done && self.faces.is_none())
+    }
+
+    /// What the faces need besides the file, one after the other; [`Reading::give_file`] or [`Reading::give_picture`] answers.
+    pub fn want(&self) -> Option<Want> {
+        self.faces.as_ref().and_then(Faces::want)
+    }
+
+    /// The content of the file that is wanted; `None` where there is none: what it would have said is then left out.
+    pub fn give_file(&mut self, content: Option<&[u8]>) {
+        if let Some(faces) = &mut self.faces {
+            faces.give_file(content);
+        }
+    }
+
+    /// The pixels of the picture that is wanted; `None` where it is of no kind that is read.
+    pub fn give_picture(&mut self, picture: Option<Picture>) {
+        if let Some(faces) = &mut self.faces {
+            faces.give_picture(picture);
+        }
+    }
+
+    /// Puts points of the faces in the place of the vertices.
+    fn sample(&mut self) {
+        let Some(faces) = self.faces.take() else {
+            return;
+        };
+        let Some(mut vertices) = self.table.take() else {
+            return;
+        };
+        let gone = vertices.gone.take().unwrap_or_default();
+        let (dropped, replaced, invalid) = (vertices.dropped, vertices.replaced, vertices.invalid);
+        let cloud = vertices.finish(true);
+        let (table, sampled) = faces::sample(faces, &cloud, &gone);
+        let mut table = table.unwrap_or_else(|| Table::of(cloud));
+        (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
+        self.sampled = sampled;
+        self.table = Some(table);
     }
 
     /// The points since the last call, and how many there can be in all, where that is known.
     pub fn take_block(&mut self) -> Option<(Block, Option<u64>)> {
+        let waits = |parser: &dyn Parser| parser.waits_for_faces();
+        if self.faces.is_some() || self.parser.as_deref().is_some_and(waits) {
+            return None;
+        }
         let table = self.table.as_mut()?;
         Some((table.take_block(), table.most_rows))
     }
 
     /// What the end of the file told.
     pub fn summary(&self) -> Summary {
-        let none = Verdict {
+        let none = || Verdict {
             narrow: true,
             color_scale: 1.0,
             has_colors: false,
             has_normals: false,
+            left_out: LeftOut::default(),
+            attributes: Vec::new(),
         };
         let table = self.table.as_ref();
         let format = self.format.unwrap_or(Format::Xyz);
+        let parser = self.parser.as_ref();
+        let keep = self.options.keep_sentinels;
+        let crs = parser.and_then(|parser| parser.crs());
         Summary {
             format,
             points: table.map_or(0, |table| table.rows),
-            verdict: table.map_or(none, Table::verdict),
-            dropped: table.map_or(0, |table| table.dropped),
-            replaced: table.map_or(0, Table::replaced),
-            faces: self.parser.as_ref().map_or(0, |parser| parser.faces()),
+            verdict: table.map_or_else(none, |table| table.verdict(keep)),
+            dropped: table.map_or(0, |table| table.dropped + table.invalid),
+            replaced: table.map_or(0, |table| table.replaced),
+            faces: parser.map_or(0, |parser| parser.faces()),
+            skipped: table.map_or(Vec::new(), |table| {
+                [table.skipped([0; 2]), self.sampled.skipped()].concat()
+            }),
+            columns: parser.map_or(Vec::new(), |parser| parser.columns()),
+            notes: parser.map_or(Vec::new(), |parser| parser.notes()),
+            preview: parser.and_then(|parser| parser.preview()),
+            sampling: self.sampled.clone(),
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
-            up: format.is_airborne().then_some([0.0, 0.0, 1.0]),
+            up: self.up(format),
             seen_from_above: format.is_airborne(),
+            unit: crs
+                .as_ref()
+                .and_then(Crs::unit)
+                .or_else(|| parser.and_then(|parser| parser.unit()))
+                .or(format.unit()),
+            crs,
         }
     }
 
-    /// Reads a file that is all there, without a copy of it.
-    pub(super) fn whole(mut self, bytes: &[u8]) -> Result<RawCloud> {
+    /// Which way is up: as the format has it. Of a PCD file, which says nothing, z as robots have it, but where all points lie before
+    /// a camera at the origin that looks along z, -y as such cameras have it.
+    fn up(&self, format: Format) -> Option<[f64; 3]> {
+        match (format, &self.table) {
+            (Format::Pcd, Some(table)) if table.rows > 0 => Some(match table.before_camera {
+                true => [0.0, -1.0, 0.0],
+                false => [0.0, 0.0, 1.0],
+            }),
+            _ => format.up(),
+        }
+    }
+
+    /// Reads a file that is all there, without a copy of it; `beside` gives the files that its faces name.
+    pub(super) fn whole(
+        mut self,
+        bytes: &[u8],
+        beside: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+    ) -> Result<RawCloud> {
         let mut taken = 0;
         while !self.done {
             taken += self.parse(&bytes[taken..], true)?;
         }
+        while let Some(want) = self.want() {
+            match want {
+                Want::File(name) => self.give_file(beside(&name).as_deref()),
+                Want::Picture(bytes) => self.give_picture(super::pictures::decode(&bytes)),
+            }
+        }
+        self.sample();
         let Summary {
             faces,
+            columns,
+            notes,
             up,
             seen_from_above,
+            unit,
+            crs,
             ..
         } = self.summary();
         let empty = || RawCloud::new(Positions::F32(Vec::new()));
-        let mut cloud = self.table.map_or_else(empty, Table::finish);
-        cloud.faces = faces;
-        cloud.up = up;
-        cloud.seen_from_above = seen_from_above;
-        Ok(cloud)
+        let keep = self.options.keep_sentinels;
+        let cloud = self.table.map_or_else(empty, |table| table.finish(keep));
+        Ok(RawCloud {
+            faces,
+            columns,
+            notes,
+            up,
+            seen_from_above,
+            unit,
+            crs,
+            skipped: [cloud.skipped, self.sampled.skipped()].concat(),
+            sampling: self.sampled,
+            ..cloud
+        })
     }
 
     fn keep(&mut self, bytes: &[u8]) {
@@ -188,12 +360,23 @@ impl Reading {
         let Some(format) = self.tell(bytes, last)? else {
             return Ok(0);
         };
+        if self.place.byte == 0 && bytes.len() < MARK.len() && !last {
+            return Ok(0);
+        }
         let parser = match &mut self.parser {
             Some(parser) => parser,
-            None => self.parser.insert(parser(format)?),
+            None => self.parser.insert(parser(format, &self.options)?),
         };
         let mut input = Input::new(bytes, format, self.size, last, self.place);
+        if self.place.byte == 0 && format.is_text() && bytes.starts_with(MARK) {
+            input.skip(MARK.len() as u64);
+        }
         self.done = parser.parse(&mut input, &mut self.table)? == Step::Done;
+        if self.done {
+            self.faces = parser
+                .take_faces()
+                .filter(|faces| !faces.corners.is_empty());
+        }
         self.place = input.place;
         Ok(if self.done {
             bytes.len()
@@ -212,27 +395,45 @@ impl Reading {
     }
 }
 
-fn parser(format: Format) -> Result<Box<dyn Parser>> {
+fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
+    let faces = || (options.faces == FaceMode::Sample).then(Faces::default);
     Ok(match format {
         #[cfg(feature = "files")]
-        Format::Ply => Box::new(ply::Ply::default()),
+        Format::Ply => Box::new(ply::Ply::new(faces())),
         #[cfg(feature = "files")]
-        Format::Xyz => Box::new(xyz::Xyz::default()),
+        Format::Xyz => Box::new(xyz::Xyz::new(options)),
         #[cfg(feature = "files")]
         Format::Pcd => Box::new(pcd::Pcd::default()),
         #[cfg(feature = "files")]
-        Format::Obj => Box::new(obj::Obj::default()),
+        Format::Obj => Box::new(obj::Obj::new(faces())),
         #[cfg(feature = "files")]
-        Format::Off => Box::new(off::Off::default()),
+        Format::Off => Box::new(off::Off::new(faces())),
         #[cfg(feature = "files")]
-        Format::Stl => Box::new(stl::Stl::default()),
+        Format::Stl => Box::new(stl::Stl::new(faces())),
         #[cfg(feature = "files")]
-        Format::Glb => Box::new(glb::Glb::default()),
+        Format::Ptx => Box::new(ptx::Ptx::new(options)),
+        #[cfg(feature = "files")]
+        Format::Grid => Box::new(grid::Raster::new(options)),
+        #[cfg(feature = "files")]
+        Format::Splat => Box::new(splats::Splats),
+        #[cfg(feature = "packed")]
+        Format::Spz => Box::new(super::packed::Spz),
+        #[cfg(feature = "packed")]
+        Format::Tiff => Box::new(super::packed::Tiff::new(options)),
+        #[cfg(feature = "packed")]
+        Format::ThreeMf => Box::new(super::packed::ThreeMf::new(faces())),
+        #[cfg(feature = "packed")]
+        Format::Glb => Box::new(super::glb::Glb::new(faces())),
         #[cfg(feature = "las")]
         Format::Las => Box::new(super::las::Las::default()),
         #[cfg(feature = "e57")]
         Format::E57 => Box::new(super::e57::E57::default()),
-        #[cfg(not(all(feature = "e57", feature = "files", feature = "las")))]
+        #[cfg(not(all(
+            feature = "e57",
+            feature = "files",
+            feature = "las",
+            feature = "packed"
+        )))]
         other => {
             return Err(crate::Error::UnsupportedFile {
                 format: other.title(),

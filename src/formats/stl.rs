@@ -1,12 +1,13 @@
 //! STL (3D Systems, 1989), ascii and binary: the vertices of its triangles. Every triangle repeats its corners, so vertices
 //! of exactly equal coordinates are one point, where it came first.
 
+use super::faces::{Face, Faces};
 use super::input::Input;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
+use super::table::{Columns, Precision, Table};
 use super::text::{number, words};
 use crate::base::error::Result;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// Before the triangles of a binary file: 80 bytes of any content and their count.
 const HEADER: u64 = 84;
@@ -48,8 +49,22 @@ fn is_binary(head: &[u8], size: u64) -> bool {
 #[derive(Default)]
 pub(super) struct Stl {
     kind: Option<Kind>,
-    seen: HashSet<[u32; 3]>,
+    /// Number of the row of each vertex.
+    seen: HashMap<[u32; 3], u32>,
     triangles: u64,
+    /// Rows of the triangle at hand.
+    corners: Vec<u32>,
+    /// Where they are wanted.
+    faces: Option<Faces>,
+}
+
+impl Stl {
+    pub(super) fn new(faces: Option<Faces>) -> Stl {
+        Stl {
+            faces,
+            ..Stl::default()
+        }
+    }
 }
 
 enum Kind {
@@ -68,7 +83,11 @@ impl Parser for Stl {
             }
             self.kind = Some(kind(input)?);
         }
-        let table = table.get_or_insert_with(|| Table::new(columns(), None));
+        let table = table.get_or_insert_with(|| {
+            let mut table = Table::new(columns(), None);
+            table.gone = self.faces.is_some().then(Vec::new);
+            table
+        });
         match self.kind {
             Some(Kind::Binary(count)) => self.binary(count, input, table),
             _ => self.ascii(input, table),
@@ -77,6 +96,14 @@ impl Parser for Stl {
 
     fn faces(&self) -> u64 {
         self.triangles
+    }
+
+    fn waits_for_faces(&self) -> bool {
+        self.faces.is_some()
+    }
+
+    fn take_faces(&mut self) -> Option<Faces> {
+        self.faces.take()
     }
 }
 
@@ -122,7 +149,7 @@ impl Stl {
                 };
                 self.vertex([0, 4, 8].map(value), table);
             }
-            self.triangles += 1;
+            self.triangle();
         }
         Ok(Step::Done)
     }
@@ -154,7 +181,7 @@ impl Stl {
                 }
                 b"endfacet" if corners == 3 => {
                     corners = 0;
-                    self.triangles += 1;
+                    self.triangle();
                 }
                 b"endfacet" => {
                     return Err(
@@ -182,20 +209,38 @@ impl Stl {
     }
 
     fn vertex(&mut self, vertex: [f32; 3], table: &mut Table) {
+        let row = table.next_row() as u32;
         // Both zeros are one.
-        if self.seen.insert(vertex.map(|x| (x + 0.0).to_bits())) {
-            table.push(&vertex.map(f64::from));
+        let seen = *self
+            .seen
+            .entry(vertex.map(|x| (x + 0.0).to_bits()))
+            .or_insert_with(|| {
+                table.push(&vertex.map(f64::from));
+                row
+            });
+        self.corners.push(seen);
+    }
+
+    /// The vertices since the last one are a triangle.
+    fn triangle(&mut self) {
+        if let Some(faces) = &mut self.faces {
+            let rows = &self.corners;
+            faces.push(
+                Face {
+                    rows,
+                    ..Face::default()
+                },
+                |_| None,
+            );
         }
+        self.corners.clear();
+        self.triangles += 1;
     }
 }
 
 fn columns() -> Columns {
     Columns {
-        position: [0, 1, 2],
-        normal: None,
-        color: None,
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
         precision: Precision::Single,
+        ..Columns::xyz()
     }
 }

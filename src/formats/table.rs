@@ -1,5 +1,7 @@
 //! Rows of named numbers become the arrays of a [`RawCloud`], all at once or block by block.
 
+use super::colors::{ColorRange, Tally};
+use super::sentinels::{LeftOut, Sentinels, Why};
 use super::{Positions, RawCloud, Stations};
 use crate::cloud::Attribute;
 
@@ -11,21 +13,10 @@ pub(super) struct Columns {
     pub(super) color: Option<[usize; 3]>,
     /// Column and name of every other scalar.
     pub(super) scalars: Vec<(usize, String)>,
+    /// The first of the scalars that a file need not use: where all of its values are 0, it is none.
+    pub(super) optional_from: usize,
     pub(super) colors: ColorRange,
     pub(super) precision: Precision,
-}
-
-/// What the values of colours run to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ColorRange {
-    /// 8-bit integers: 1 means 1 of 255.
-    Bytes,
-    /// 1.
-    Unit,
-    /// Integers: 255, or 65,535 where one of them is larger.
-    Integers,
-    /// The values tell: 1 where all are at most 1, else 255, or 65,535 where one is larger.
-    Guess,
 }
 
 /// In what positions are kept.
@@ -83,9 +74,21 @@ impl Columns {
             normal,
             color,
             scalars,
+            ..Columns::xyz()
+        })
+    }
+
+    /// Three columns, and nothing but x, y and z in them.
+    pub(super) fn xyz() -> Columns {
+        Columns {
+            position: [0, 1, 2],
+            normal: None,
+            color: None,
+            scalars: Vec::new(),
+            optional_from: usize::MAX,
             colors: ColorRange::Guess,
             precision: Precision::AsNeeded,
-        })
+        }
     }
 }
 
@@ -98,7 +101,7 @@ pub struct Block {
     pub normals: Option<Vec<f32>>,
     /// `r g b` a point.
     pub colors: Option<ColorValues>,
-    /// Other scalars, one value a point.
+    /// Other scalars, one value a point. One that comes later than the first block was 0 before.
     pub attributes: Vec<Attribute>,
 }
 
@@ -112,7 +115,7 @@ pub enum ColorValues {
 }
 
 /// What only the whole file tells about its blocks.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// Single precision suffices for the positions, which came in double.
     pub narrow: bool,
@@ -120,8 +123,12 @@ pub struct Verdict {
     pub color_scale: f32,
     /// The colours say something.
     pub has_colors: bool,
-    /// The normals belong to the points.
+    /// The normals belong to the points, and one of them is not zero.
     pub has_normals: bool,
+    /// The points that are none.
+    pub left_out: LeftOut,
+    /// Names of the attributes, in order.
+    pub attributes: Vec<String>,
 }
 
 /// Collects rows.
@@ -131,18 +138,28 @@ pub(super) struct Table {
     pub(super) most_rows: Option<u64>,
     block: Block,
     pub(super) rows: u64,
-    low: [f64; 3],
-    high: [f64; 3],
-    /// The most that rounding to single precision moves a coordinate.
-    rounding: f64,
-    /// The largest value of a colour.
-    brightest: f32,
+    pub(super) sentinels: Sentinels,
+    tally: Tally,
+    /// Which of the scalars had a value that is not 0, or need none.
+    used: Vec<bool>,
+    /// A normal was not zero.
+    normals_used: bool,
+    /// All rows lie within 45° of the z axis from the origin.
+    pub(super) before_camera: bool,
     /// Where the format has colours that a file need not use: some do.
     pub(super) colors_said: bool,
     pub(super) normals_said: bool,
     pub(super) stations: Stations,
+    /// Rows left out because a coordinate is not finite.
     pub(super) dropped: usize,
-    replaced: usize,
+    /// Rows left out because the file marks them as invalid.
+    pub(super) invalid: usize,
+    /// Rows left out because the file says that they have no height, or no return.
+    pub(super) no_data: u64,
+    pub(super) no_returns: u64,
+    pub(super) replaced: usize,
+    /// Which rows were left out, counted with all others, where faces ask for it.
+    pub(super) gone: Option<Vec<u32>>,
 }
 
 impl Table {
@@ -150,40 +167,87 @@ impl Table {
     pub(super) fn new(columns: Columns, most_rows: Option<u64>) -> Table {
         Table {
             block: columns.empty_block(),
+            used: (0..columns.scalars.len())
+                .map(|scalar| scalar < columns.optional_from)
+                .collect(),
             columns,
             most_rows,
             rows: 0,
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-            rounding: 0.0,
-            brightest: 0.0,
+            sentinels: Sentinels::default(),
+            tally: Tally::default(),
+            normals_used: false,
+            before_camera: true,
             colors_said: true,
             normals_said: true,
             stations: Stations::default(),
             dropped: 0,
+            gone: None,
+            invalid: 0,
+            no_data: 0,
+            no_returns: 0,
             replaced: 0,
         }
+    }
+
+    /// A table of a cloud's points.
+    pub(super) fn of(cloud: RawCloud) -> Table {
+        let attributes = cloud.attributes.iter().enumerate();
+        let columns = Columns {
+            normal: cloud.normals.as_ref().map(|_| [3, 4, 5]),
+            color: cloud.colors.as_ref().map(|_| [6, 7, 8]),
+            scalars: attributes.map(|(i, a)| (9 + i, a.name.clone())).collect(),
+            colors: ColorRange::Bytes,
+            precision: match cloud.positions {
+                Positions::F32(_) => Precision::Single,
+                Positions::F64(_) => Precision::Double,
+            },
+            ..Columns::xyz()
+        };
+        let rows = cloud.points() as u64;
+        let mut table = Table::new(columns, Some(rows));
+        table.rows = rows;
+        table.normals_used = true;
+        table.block = Block {
+            positions: cloud.positions,
+            normals: cloud.normals,
+            colors: cloud.colors.map(ColorValues::Bytes),
+            attributes: cloud.attributes,
+        };
+        table
+    }
+
+    /// Rows so far, with those that were left out.
+    pub(super) fn next_row(&self) -> u64 {
+        self.rows + self.dropped as u64
+    }
+
+    /// The coordinates of a row, where none was left out and no block was taken.
+    pub(super) fn position(&self, row: u32) -> Option<[f64; 3]> {
+        let row = row as usize;
+        let is_there = self.dropped == 0 && row < self.block.positions.len() / 3;
+        is_there.then(|| [0, 1, 2].map(|axis| self.block.positions.get(3 * row + axis)))
     }
 
     /// Adds a row; one with a coordinate that is not finite is counted and left out.
     pub(super) fn push(&mut self, row: &[f64]) {
         let position = self.columns.position.map(|column| row[column]);
         if position.iter().any(|x| !x.is_finite()) {
+            let row = self.next_row();
+            if let Some(gone) = &mut self.gone {
+                gone.push(row as u32);
+            }
             self.dropped += 1;
             return;
         }
         self.rows += 1;
+        let [x, y, z] = position;
+        self.before_camera &= x.abs() < z && y.abs() < z;
         match &mut self.block.positions {
             Positions::F32(values) => values.extend(position.map(|x| x as f32)),
-            Positions::F64(values) => {
-                values.extend(position);
-                for (axis, x) in position.into_iter().enumerate() {
-                    self.low[axis] = self.low[axis].min(x);
-                    self.high[axis] = self.high[axis].max(x);
-                    self.rounding = self.rounding.max((f64::from(x as f32) - x).abs());
-                }
-            }
+            Positions::F64(values) => values.extend(position),
         }
+        self.sentinels.add(position);
+        let row_of_block = self.block.positions.len() / 3;
         let replaced = &mut self.replaced;
         let mut finite = |column: usize| {
             let value = row[column] as f32;
@@ -195,73 +259,105 @@ impl Table {
             }
         };
         if let (Some(normal), Some(normals)) = (self.columns.normal, &mut self.block.normals) {
-            normals.extend(normal.map(&mut finite));
+            let normal = normal.map(&mut finite);
+            self.normals_used |= normal != [0.0; 3];
+            normals.extend(normal);
         }
         if let (Some(color), Some(colors)) = (self.columns.color, &mut self.block.colors) {
-            let color = color.map(&mut finite);
+            let range = self.columns.colors;
+            let color = color.map(|column| range.kept(finite(column)));
             match colors {
                 ColorValues::Bytes(bytes) => bytes.extend(color.map(|c| c as u8)),
                 ColorValues::Numbers(numbers) => {
-                    self.brightest = color.into_iter().fold(self.brightest, f32::max);
+                    color.iter().for_each(|value| self.tally.add(*value));
                     numbers.extend(color);
                 }
             }
         }
-        for (attribute, (column, _)) in self.block.attributes.iter_mut().zip(&self.columns.scalars)
-        {
-            attribute.values.push(finite(*column));
+        let scalars = self.columns.scalars.iter().zip(&mut self.used);
+        for (attribute, ((column, _), used)) in self.block.attributes.iter_mut().zip(scalars) {
+            let value = finite(*column);
+            if !*used && value != 0.0 {
+                *used = true;
+                attribute.values.resize(row_of_block - 1, 0.0);
+            }
+            if *used {
+                attribute.values.push(value);
+            }
         }
     }
 
     /// Adds a normal that the file has apart from the rows; the columns name none.
     pub(super) fn push_normal(&mut self, normal: [f32; 3]) {
+        self.normals_used |= normal != [0.0; 3];
         self.block.normals.get_or_insert_default().extend(normal);
     }
 
     /// The rows from here on were seen from `position`; `None` where the file does not tell.
     pub(super) fn seen_from(&mut self, position: Option<[f64; 3]>) {
         self.stations.begin(self.rows, position);
+        if let Some(position) = position {
+            self.sentinels.seen_from(position);
+        }
     }
 
     /// The rows since the last block.
     pub(super) fn take_block(&mut self) -> Block {
-        std::mem::replace(&mut self.block, self.columns.empty_block())
+        let mut block = std::mem::replace(&mut self.block, self.columns.empty_block());
+        let mut used = self.used.iter();
+        block.attributes.retain(|_| used.next() == Some(&true));
+        block
     }
 
-    /// After the last row.
-    pub(super) fn verdict(&self) -> Verdict {
-        let extent = [0, 1, 2].map(|axis| self.high[axis] - self.low[axis]);
+    /// After the last row; `keep` leaves nothing out.
+    pub(super) fn verdict(&self, keep: bool) -> Verdict {
+        let left_out = if keep {
+            LeftOut::default()
+        } else {
+            self.sentinels.verdict()
+        };
+        let span = self.sentinels.span(&left_out);
+        let extent = [0, 1, 2].map(|axis| span.high[axis] - span.low[axis]);
         let diagonal =
             (extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]).sqrt();
         let allowed = diagonal / f64::from(1 << 22);
-        let suffices = self.rounding.is_finite() && (self.rows == 0 || self.rounding <= allowed);
+        let suffices = span.rounding.is_finite() && (self.rows == 0 || span.rounding <= allowed);
+        let scalars = self.columns.scalars.iter().zip(&self.used);
         Verdict {
             narrow: self.columns.precision == Precision::AsNeeded && suffices,
-            color_scale: match self.columns.colors {
-                ColorRange::Unit => 255.0,
-                ColorRange::Guess if self.brightest <= 1.0 => 255.0,
-                _ if self.brightest > 255.0 => 1.0 / 257.0,
-                _ => 1.0,
-            },
+            color_scale: self.tally.scale(self.columns.colors),
             has_colors: self.colors_said,
-            has_normals: self.normals_said,
+            has_normals: self.normals_said && (self.normals_used || self.rows == 0),
+            left_out,
+            attributes: scalars
+                .filter(|(_, used)| **used)
+                .map(|((_, name), _)| name.clone())
+                .collect(),
         }
     }
 
-    /// Values of colours, normals and attributes that were not finite and are now 0.
-    pub(super) fn replaced(&self) -> usize {
-        self.replaced
+    /// Rows that were left out, by why; `later` had no data, or no return, as the end told.
+    pub(super) fn skipped(&self, later: [u64; 2]) -> Vec<(&'static str, u64)> {
+        let counts = [
+            ("not-finite", self.dropped as u64),
+            ("invalid", self.invalid as u64),
+            ("no-data", self.no_data + later[0]),
+            ("no-return", self.no_returns + later[1]),
+        ];
+        counts.into_iter().filter(|(_, count)| *count > 0).collect()
     }
 
     /// The arrays of all rows, where no block was taken.
-    pub(super) fn finish(mut self) -> RawCloud {
-        let verdict = self.verdict();
+    pub(super) fn finish(mut self, keep: bool) -> RawCloud {
+        let verdict = self.verdict(keep);
+        let mut block = self.take_block();
+        let [no_data, no_return] = block.leave_out(&verdict.left_out);
         let Block {
             positions,
             normals,
             colors,
             attributes,
-        } = self.take_block();
+        } = block;
         let positions = match positions {
             Positions::F64(values) if verdict.narrow => {
                 Positions::F32(values.into_iter().map(|x| x as f32).collect())
@@ -282,10 +378,58 @@ impl Table {
             });
         cloud.attributes = attributes;
         cloud.viewpoints = self.stations.viewpoints(cloud.points());
-        cloud.dropped = self.dropped;
+        cloud.dropped = self.dropped + self.invalid;
+        cloud.skipped = self.skipped([no_data, no_return]);
         cloud.replaced = self.replaced;
         cloud
     }
+}
+
+impl Block {
+    /// Leaves out points that are none; how many had no data, and how many were no returns.
+    fn leave_out(&mut self, left_out: &LeftOut) -> [u64; 2] {
+        let mut counts = [0; 2];
+        if left_out.is_empty() {
+            return counts;
+        }
+        let points = self.positions.len() / 3;
+        let keep: Vec<bool> = (0..points)
+            .map(|point| {
+                let position = [0, 1, 2].map(|axis| self.positions.get(3 * point + axis));
+                let why = left_out.why(position);
+                if let Some(why) = why {
+                    counts[usize::from(why == Why::NoReturn)] += 1;
+                }
+                why.is_none()
+            })
+            .collect();
+        match &mut self.positions {
+            Positions::F32(values) => retain(values, 3, &keep),
+            Positions::F64(values) => retain(values, 3, &keep),
+        }
+        if let Some(normals) = &mut self.normals {
+            retain(normals, 3, &keep);
+        }
+        match &mut self.colors {
+            Some(ColorValues::Bytes(values)) => retain(values, 3, &keep),
+            Some(ColorValues::Numbers(values)) => retain(values, 3, &keep),
+            None => {}
+        }
+        for attribute in &mut self.attributes {
+            retain(&mut attribute.values, 1, &keep);
+        }
+        counts
+    }
+}
+
+/// Keeps the values of these points.
+fn retain<T>(values: &mut Vec<T>, each: usize, keep: &[bool]) {
+    let mut value = 0;
+    values.retain(|_| {
+        value += 1;
+        // Normals that the file has apart may be more than its points.
+        keep.get((value - 1) / each).copied().unwrap_or(true)
+    });
 }
 
 impl Columns {

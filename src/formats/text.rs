@@ -29,19 +29,59 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
         .filter(|word| !word.is_empty())
 }
 
-/// Bytes for a message: quoted, not longer than 40 characters, control characters escaped.
+/// Text in UTF-8, or else, as old programs write it, in Latin-1.
+pub(super) fn decoded(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
+}
+
+/// Bytes for a message: text is quoted, not longer than 40 characters, control characters escaped; other bytes are said
+/// as hexadecimal numbers.
 pub(super) fn quote(bytes: &[u8]) -> String {
     const MOST: usize = 40;
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MOST)]);
-    let mut shown: String = text
-        .chars()
-        .take(MOST)
-        .flat_map(char::escape_default)
-        .collect();
+    const MOST_BYTES: usize = 8;
+    let head = &bytes[..bytes.len().min(4 * MOST)];
+    // The last character may be cut.
+    let whole = match std::str::from_utf8(head) {
+        Ok(text) => Some(text),
+        Err(error) if error.error_len().is_none() => {
+            std::str::from_utf8(&head[..error.valid_up_to()]).ok()
+        }
+        Err(_) => None,
+    };
+    let is_latin = head
+        .iter()
+        .all(|&b| matches!(b, b'\t' | b' '..=b'~' | 0xa0..));
+    let text: String = match whole {
+        Some(text) => text.into(),
+        None if is_latin => decoded(head),
+        None => {
+            let numbers: Vec<String> = head
+                .iter()
+                .take(MOST_BYTES)
+                .map(|byte| format!("{byte:02x}"))
+                .collect();
+            let more = if bytes.len() > MOST_BYTES { " …" } else { "" };
+            return format!("the bytes {}{more}", numbers.join(" "));
+        }
+    };
+    let mut shown: String = text.chars().take(MOST).flat_map(shown_char).collect();
     if bytes.len() > 4 * MOST || text.chars().count() > MOST {
         shown.push('…');
     }
     format!("\"{shown}\"")
+}
+
+/// A letter as it is, a control character or a quote as Rust writes it.
+fn shown_char(c: char) -> impl Iterator<Item = char> {
+    let plain = !c.is_control() && !['"', '\\'].contains(&c);
+    let escaped = (!plain).then(|| c.escape_default());
+    plain
+        .then_some(c)
+        .into_iter()
+        .chain(escaped.into_iter().flatten())
 }
 
 #[cfg(test)]
@@ -74,5 +114,10 @@ mod tests {
     fn quotes_are_short_and_printable() {
         assert_eq!(quote(b"a\x00\n"), "\"a\\u{0}\\n\"");
         assert!(quote(&[b'x'; 1000]).chars().count() < 50);
+        assert_eq!(
+            quote(b"\x89PNG\r\n\x1a\n\xff"),
+            "the bytes 89 50 4e 47 0d 0a 1a 0a …"
+        );
+        assert_eq!(quote(b"H\xf6he"), "\"Höhe\"");
     }
 }

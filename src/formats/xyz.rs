@@ -1,147 +1,111 @@
 //! Rows of numbers as text: XYZ, TXT, PTS, CSV, ASC. No standard says what such a file holds, so this does:
 //!
-//! - **Rows**: one point a line; values are separated by blanks, tabs, commas or semicolons. Where a line has semicolons,
-//!   commas are decimal commas. All rows have the same number of values, three at least. Blank lines are passed over,
-//!   and lines that start with `#`, `//`, `%` or `!`.
+//! - **Rows**: one point a line; values are separated by blanks, tabs, commas, semicolons or bars, the decimal mark is a point or
+//!   a comma: whichever makes most of the first lines rows. All rows have the same number of values, three numbers at
+//!   least; values may be quoted, or empty between marks. Columns of text are passed over, and so are blank lines, lines
+//!   that start with `#`, `//`, `%` or `!`, and titles above the rows.
 //! - **Counts**: a line with one whole number is a count of rows (PTS; a file may hold several scans). Fewer rows than the
 //!   counts say mean that the file is cut off, which is an error; more are read.
-//! - **Names**: a line before the first row whose first value is not a number names the columns; so does a comment
-//!   that names x, y and z. Without x, y and z among the names the file is refused, because a guess could be wrong.
-//! - **Without names** the first three columns are x, y, z, and the rest follows from their number and from the first
-//!   thousand rows: three columns whose vectors have length 1 (within 5 %) are normals; three columns with whole numbers
-//!   from 0 to 255, or with numbers from 0 to 1, are colours; one column alone is `intensity`. Where both readings of
-//!   seven columns fit, intensity comes before the colours in a file with a count (PTS) and after them in others. Columns
-//!   that fit nothing become attributes `column4`, `column5` ….
+//! - **Names**: a line or a comment before the first row that names x, y and z names the columns; see `names`. A line of as
+//!   many other names is refused, because a guess could be wrong; the option `columns` says what they are.
+//! - **Without names** a number that only counts or names the points in front is none of x, y, z; the next three columns are.
+//!   The rest follows from their number and from the first thousand rows: three columns whose vectors have length 1
+//!   (within 5 %) are normals; three with whole numbers of 8 or 16 bits, or with numbers from 0 to 1, are colours, and one
+//!   with whole numbers beyond 16 bits, or with hexadecimal ones, packs them; one column alone is `intensity`. Where both
+//!   readings of seven columns fit, intensity comes before the colours in a file with a count (PTS) and after them in
+//!   others. Columns that fit nothing become attributes `column4`, `column5` ….
+
+mod dialect;
+mod guess;
+mod names;
+mod plan;
 
 use super::input::Input;
+use super::options::ReadOptions;
+use super::preview::Preview;
 use super::reading::{Parser, Step};
-use super::table::{ColorRange, Columns, Precision, Table};
-use super::text::number;
+use super::table::Table;
 use crate::base::error::Result;
+use dialect::{Dialect, Value};
+use plan::{NoPlan, Numbered, Plan};
 
-/// Rows that decide what columns without names are.
+/// Lines that decide what the columns are.
 const LOOK_AHEAD: usize = 1000;
+/// Or bytes.
+const MOST_AHEAD: usize = 1 << 22;
 
 /// Whether the first line that says something is a row, a count, or names x, y and z.
 pub(super) fn looks_like(head: &[u8]) -> bool {
     const MOST_LINES: usize = 100;
-    let mut row = Vec::new();
-    without_mark(head)
+    let lines: Vec<Numbered> = head
         .split(|&b| b == b'\n' || b == b'\r')
         .take(MOST_LINES)
-        .map(|line| match parse(line, &mut row) {
-            Line::Nothing => None,
-            Line::Names { names, .. } => Some(Columns::from_names(&names).is_some()),
-            Line::Count(_) => Some(true),
-            Line::Row => Some(row.len() >= 3),
-            Line::Bad(_) => Some(false),
+        .map(|line| Numbered {
+            number: 0,
+            bytes: line.to_vec(),
         })
-        .find_map(|answer| answer)
-        .unwrap_or(false)
+        .collect();
+    plan::looks_like(&lines)
 }
 
-/// Without the byte order mark of UTF-8.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
-}
-
-/// What a line says.
-enum Line<'a> {
-    /// Nothing, or a comment that names no columns.
+/// What a line is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Line {
+    /// Blank, or a comment.
     Nothing,
-    /// Names of columns, as a line of their own or in a comment.
-    Names { names: Vec<String>, comment: bool },
     /// One whole number.
     Count(u64),
-    /// Numbers; they are in the buffer.
+    /// Three numbers or more.
     Row,
-    /// A value that is not a number.
-    Bad(&'a [u8]),
+    Other,
 }
 
-/// Takes a line apart; a row's values replace what is in `row`.
-fn parse<'a>(line: &'a [u8], row: &mut Vec<f64>) -> Line<'a> {
-    row.clear();
-    let line = line.trim_ascii();
-    if line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark)) {
-        let marks = line.iter().take_while(|b| b"#/%!".contains(b)).count();
-        let names = names(&line[marks..]);
-        return if Columns::from_names(&names).is_some() {
-            Line::Names {
-                names,
-                comment: true,
-            }
-        } else {
-            Line::Nothing
-        };
+fn line_of(line: &[u8], dialect: Dialect) -> Line {
+    if plan::is_comment(line) {
+        return Line::Nothing;
     }
-    let decimal_comma = line.contains(&b';') && line.contains(&b',');
-    for token in values(line) {
-        let value = if decimal_comma {
-            number(
-                &token
-                    .iter()
-                    .map(|&b| if b == b',' { b'.' } else { b })
-                    .collect::<Vec<u8>>(),
-            )
-        } else {
-            number(token)
-        };
-        match value {
-            Some(value) => row.push(value),
-            None if row.is_empty() => {
-                return Line::Names {
-                    names: names(line),
-                    comment: false,
-                };
-            }
-            None => return Line::Bad(token),
+    let (mut numbers, mut said) = (0, 0);
+    let mut first = Value::Empty;
+    for token in dialect.split(line) {
+        let value = dialect.value(token);
+        numbers += u64::from(matches!(value, Value::Number(_) | Value::Hex(_)));
+        if value != Value::Empty {
+            said += 1;
+            first = if said == 1 { value } else { first };
         }
     }
-    match row[..] {
-        [] => Line::Nothing,
-        [count] if count >= 0.0 && count.fract() == 0.0 => Line::Count(count as u64),
-        _ => Line::Row,
+    match (said, first) {
+        (0, _) => Line::Nothing,
+        (1, Value::Number(count)) if count >= 0.0 && count.fract() == 0.0 => {
+            Line::Count(count as u64)
+        }
+        _ if numbers >= 3 => Line::Row,
+        _ => Line::Other,
     }
-}
-
-/// The values of a line: between semicolons, else between commas, else between blanks and tabs.
-fn values(line: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let separator = [b';', b','].into_iter().find(|mark| line.contains(mark));
-    let line = match line {
-        [start @ .., last] if Some(*last) == separator => start,
-        _ => line,
-    };
-    line.split(move |b| separator.map_or(b.is_ascii_whitespace(), |mark| *b == mark))
-        .filter(move |value| separator.is_some() || !value.is_empty())
-        .map(|value| {
-            let value = value.trim_ascii();
-            let inside = value
-                .strip_prefix(b"\"")
-                .and_then(|rest| rest.strip_suffix(b"\""));
-            inside.unwrap_or(value)
-        })
-}
-
-fn names(line: &[u8]) -> Vec<String> {
-    let name = |value: &[u8]| String::from_utf8_lossy(value.trim_ascii()).into_owned();
-    values(line.trim_ascii()).map(name).collect()
 }
 
 /// Reads the points.
 #[derive(Default)]
 pub(super) struct Xyz {
-    names: Option<Vec<String>>,
-    names_in_comment: bool,
+    options: ReadOptions,
+    /// The first lines, until there is a plan.
+    ahead: Vec<Numbered>,
+    ahead_bytes: usize,
+    plan: Option<Plan>,
     /// Sum of the counts in the file.
     promised: Option<u64>,
     rows: u64,
-    /// Values a row.
-    width: usize,
-    /// The first rows, one after the other, until the columns are known.
-    ahead: Vec<f64>,
     /// Values of the line at hand.
     values: Vec<f64>,
+}
+
+impl Xyz {
+    pub(super) fn new(options: &ReadOptions) -> Xyz {
+        Xyz {
+            options: options.clone(),
+            ..Xyz::default()
+        }
+    }
 }
 
 impl Parser for Xyz {
@@ -150,213 +114,120 @@ impl Parser for Xyz {
             if input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]) {
                 return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
             }
-            if input.rest().len() < 3 && !input.last {
-                return Ok(Step::More);
-            }
-            input.skip((input.rest().len() - without_mark(input.rest()).len()) as u64);
         }
-        let mut values = std::mem::take(&mut self.values);
         while let Some(line) = input.line()? {
-            self.line(line, &mut values, input, table)?;
+            let number = input.place.line;
+            if number <= self.options.skip {
+                continue;
+            }
+            if let (Some(plan), Some(table)) = (&self.plan, table.as_mut()) {
+                let row = read_line(plan, line, number, input, &mut self.values)?;
+                push(row, &self.values, &mut self.promised, &mut self.rows, table);
+                continue;
+            }
+            self.ahead_bytes += line.len();
+            self.ahead.push(Numbered {
+                number,
+                bytes: line.to_vec(),
+            });
+            if self.ahead.len() == LOOK_AHEAD || self.ahead_bytes > MOST_AHEAD {
+                self.start(input, table)?;
+            }
         }
-        self.values = values;
         if !input.last {
             return Ok(Step::More);
         }
         self.finish(input, table)?;
         Ok(Step::Done)
     }
+
+    fn columns(&self) -> Vec<String> {
+        self.plan
+            .as_ref()
+            .map_or(Vec::new(), |plan| plan.roles.clone())
+    }
+
+    fn preview(&self) -> Option<Preview> {
+        self.plan.as_ref().map(|plan| plan.preview.clone())
+    }
+}
+
+/// What a line after the plan holds: a row, which is in `values`, a count of rows, or nothing.
+fn read_line(
+    plan: &Plan,
+    line: &[u8],
+    number: u64,
+    input: &Input,
+    values: &mut Vec<f64>,
+) -> Result<Line> {
+    let line = line.trim_ascii_end();
+    if line.is_empty() || plan::is_comment(line) {
+        return Ok(Line::Nothing);
+    }
+    if plan.dialect.split(line).nth(1).is_none()
+        && let count @ Line::Count(_) = line_of(line, plan.dialect)
+    {
+        return Ok(count);
+    }
+    plan.row(line, input, number, values)?;
+    Ok(Line::Row)
+}
+
+fn push(line: Line, values: &[f64], promised: &mut Option<u64>, rows: &mut u64, table: &mut Table) {
+    match line {
+        Line::Count(count) => *promised = Some(promised.unwrap_or(0).saturating_add(count)),
+        Line::Row => {
+            *rows += 1;
+            table.push(values);
+        }
+        Line::Nothing | Line::Other => {}
+    }
 }
 
 impl Xyz {
-    fn line(
-        &mut self,
-        line: &[u8],
-        row: &mut Vec<f64>,
-        input: &Input,
-        table: &mut Option<Table>,
-    ) -> Result<()> {
-        match parse(line, row) {
-            Line::Nothing => Ok(()),
-            Line::Count(count) => {
-                self.promised = Some(self.promised.unwrap_or(0).saturating_add(count));
-                Ok(())
+    /// Decides how rows are read, and reads the first.
+    fn start(&mut self, input: &Input, table: &mut Option<Table>) -> Result<()> {
+        let ahead = std::mem::take(&mut self.ahead);
+        let plan = match Plan::of(&ahead, &self.options) {
+            Ok(plan) => plan,
+            Err(NoPlan::Line {
+                number,
+                expected,
+                found,
+            }) => return Err(input.bad_at_line(number, &expected, found)),
+            Err(NoPlan::Nothing) => {
+                return Err(self.no_rows(input, "rows of numbers"));
             }
-            Line::Names { comment: true, .. } if self.rows > 0 => Ok(()),
-            Line::Names { .. } if self.rows > 0 => Err(input.bad_line("numbers", line)),
-            Line::Names { names, comment } => {
-                let known = Columns::from_names(&names).is_some();
-                let mut sorted: Vec<String> =
-                    names.iter().map(|name| name.to_lowercase()).collect();
-                sorted.sort_unstable();
-                let twice = sorted.windows(2).any(|pair| pair[0] == pair[1]);
-                if known && !twice {
-                    self.names = Some(names);
-                    self.names_in_comment = comment;
-                    Ok(())
-                } else if comment {
-                    Ok(())
-                } else {
-                    let expected = "numbers, or different column names with x, y and z";
-                    Err(input.bad_line(expected, line))
-                }
-            }
-            Line::Bad(value) => Err(input.bad_line("a number", value)),
-            Line::Row => self.row(line, row, input, table),
-        }
-    }
-
-    fn row(
-        &mut self,
-        line: &[u8],
-        row: &[f64],
-        input: &Input,
-        table: &mut Option<Table>,
-    ) -> Result<()> {
-        if self.rows == 0 {
-            self.width = row.len();
-            let names = self.names.as_ref().map_or(self.width, Vec::len);
-            if names != self.width && self.names_in_comment {
-                self.names = None;
-            } else if names != self.width {
-                return Err(input.bad_line(&format!("{names} values, one for each name"), line));
-            }
-        }
-        if row.len() < 3 || row.len() != self.width {
-            return Err(input.bad_line(&format!("{} values", self.width.max(3)), line));
-        }
-        self.rows += 1;
-        match table {
-            Some(table) => table.push(row),
-            None => {
-                self.ahead.extend(row);
-                if self.ahead.len() == LOOK_AHEAD * self.width {
-                    *table = Some(self.start_table());
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Decides what the columns are and moves the first rows into a table.
-    fn start_table(&mut self) -> Table {
-        let columns = match &self.names {
-            Some(names) => Columns::from_names(names),
-            None => None,
         };
-        let columns =
-            columns.unwrap_or_else(|| guess(&self.ahead, self.width, self.promised.is_some()));
-        let mut table = Table::new(columns, None);
-        for row in self.ahead.chunks_exact(self.width.max(1)) {
-            table.push(row);
+        let table = table.insert(Table::new(plan.columns.clone(), None));
+        // Titles and names are above the first row.
+        let mut begun = false;
+        for line in &ahead {
+            let kind = line_of(&line.bytes, plan.dialect);
+            begun |= line.number >= plan.first_row;
+            if begun || matches!(kind, Line::Count(_)) {
+                let row = read_line(&plan, &line.bytes, line.number, input, &mut self.values)?;
+                push(row, &self.values, &mut self.promised, &mut self.rows, table);
+            }
         }
-        self.ahead = Vec::new();
-        table
+        self.plan = Some(plan);
+        Ok(())
     }
 
     fn finish(&mut self, input: &Input, table: &mut Option<Table>) -> Result<()> {
-        let promised = self.promised.unwrap_or(0);
-        let says_nothing = self.promised.is_none() && self.names.is_none();
-        if self.rows < promised || (self.rows == 0 && says_nothing) {
-            let expected = if says_nothing {
-                "rows of numbers".into()
-            } else {
-                format!("{promised} rows")
-            };
-            let found = format!("the end of the file after {} rows", self.rows);
-            return Err(input.bad_at_line(input.place.line.max(1), &expected, found));
+        if self.plan.is_none() {
+            self.start(input, table)?;
         }
-        if table.is_none() {
-            *table = Some(self.start_table());
-        }
-        Ok(())
-    }
-}
-
-/// A column, or three, after x, y and z.
-#[derive(Clone, Copy, PartialEq)]
-enum Field {
-    Intensity,
-    Color,
-    Normal,
-}
-
-/// What may follow x, y and z; of those that fit, the first counts.
-const LAYOUTS: [&[Field]; 15] = {
-    use Field::{Color, Intensity, Normal};
-    [
-        &[Intensity],
-        &[Normal],
-        &[Color],
-        &[Normal, Intensity],
-        &[Intensity, Normal],
-        &[Color, Intensity],
-        &[Intensity, Color],
-        &[Color, Normal],
-        &[Normal, Color],
-        &[Intensity, Color, Normal],
-        &[Intensity, Normal, Color],
-        &[Color, Intensity, Normal],
-        &[Normal, Intensity, Color],
-        &[Color, Normal, Intensity],
-        &[Normal, Color, Intensity],
-    ]
-};
-
-impl Field {
-    fn width(self) -> usize {
-        if self == Field::Intensity { 1 } else { 3 }
-    }
-
-    /// Whether the columns from `start` on look like it in all rows.
-    fn fits<'a>(self, rows: impl Iterator<Item = &'a [f64]> + Clone, start: usize) -> bool {
-        match self {
-            Field::Intensity => true,
-            Field::Normal => rows.into_iter().all(|row| {
-                let [x, y, z] = [row[start], row[start + 1], row[start + 2]];
-                ((x * x + y * y + z * z).sqrt() - 1.0).abs() <= 0.05
-            }),
-            Field::Color => {
-                let mut values = rows.flat_map(|row| &row[start..start + 3]);
-                let mut again = values.clone();
-                values.all(|v| (0.0..=255.0).contains(v) && v.fract() == 0.0)
-                    || again.all(|v| (0.0..=1.0).contains(v))
+        match self.promised {
+            Some(promised) if self.rows < promised => {
+                Err(self.no_rows(input, &format!("{promised} rows")))
             }
+            _ => Ok(()),
         }
     }
-}
 
-/// The columns of rows without names, by their values.
-fn guess(values: &[f64], width: usize, counted: bool) -> Columns {
-    let rows = values.chunks_exact(width.max(1));
-    let fits = |layout: &&&[Field]| {
-        let mut start = 3;
-        let total: usize = layout.iter().map(|field| field.width()).sum();
-        width == 3 + total
-            && layout.iter().all(|field| {
-                let here = start;
-                start += field.width();
-                field.fits(rows.clone(), here)
-            })
-    };
-    let intensity_first: &[Field] = &[Field::Intensity, Field::Color];
-    let preferred = Some(&intensity_first).filter(|_| counted);
-    let layout = preferred.into_iter().chain(&LAYOUTS).find(fits);
-    let mut names: Vec<String> = ["x", "y", "z"].map(String::from).into();
-    for field in layout.copied().unwrap_or_default() {
-        match field {
-            Field::Intensity => names.push("intensity".into()),
-            Field::Color => names.extend(["red", "green", "blue"].map(String::from)),
-            Field::Normal => names.extend(["nx", "ny", "nz"].map(String::from)),
-        }
+    fn no_rows(&self, input: &Input, expected: &str) -> crate::Error {
+        let found = format!("the end of the file after {} rows", self.rows);
+        input.bad_at_line(input.place.line.max(1), expected, found)
     }
-    names.extend((names.len()..width).map(|column| format!("column{}", column + 1)));
-    Columns::from_names(&names).unwrap_or(Columns {
-        position: [0, 1, 2],
-        normal: None,
-        color: None,
-        scalars: Vec::new(),
-        colors: ColorRange::Guess,
-        precision: Precision::AsNeeded,
-    })
 }

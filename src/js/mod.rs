@@ -1,11 +1,27 @@
 //! What every border to JavaScript needs: panics kept, errors thrown, objects made.
 
-#[cfg(feature = "engine")]
+#[cfg(any(feature = "engine", feature = "exports"))]
+pub mod clouds;
+#[cfg(any(feature = "engine", feature = "exports", feature = "las"))]
+mod crs;
+#[cfg(any(feature = "engine", feature = "exports"))]
 mod viewpoints;
 #[cfg(feature = "engine")]
 pub mod wasm;
-#[cfg(not(feature = "engine"))]
+#[cfg(feature = "pictures")]
+pub mod wasm_pictures;
+#[cfg(all(
+    not(feature = "engine"),
+    any(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )
+))]
 pub mod wasm_read;
+#[cfg(any(feature = "engine", feature = "exports"))]
+pub mod wasm_write;
 
 use crate::base::error::Error;
 use js_sys::{Object, Reflect};
@@ -68,4 +84,20 @@ pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T
     value
         .as_ref()
         .map_or(JsValue::UNDEFINED, |value| array(value).into())
+}
+
+#[cfg(any(feature = "engine", feature = "exports"))]
+pub(crate) fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
+    Error::BadOption {
+        option: option.into(),
+        expected: expected.into(),
+        found: found.to_string(),
+    }
+}
+
+/// Options over their defaults; ranges are checked by the pipeline.
+#[cfg(any(feature = "engine", feature = "exports"))]
+pub(crate) fn from_js<T: serde::de::DeserializeOwned>(options: JsValue) -> Result<T, Error> {
+    serde_wasm_bindgen::from_value(options)
+        .map_err(|error| bad_option("options", "the options of the reference", error))
 }

@@ -8,9 +8,11 @@ use crate::base::error::Error;
 use crate::base::params::{ReduceParams, SurfaceParams};
 use crate::base::progress::{Progress, Stage};
 use crate::cloud::{Attribute, Cloud};
-use crate::formats::{self, Output, Positions, RawCloud, WriteOptions};
-use crate::js::viewpoints::{PointViews, views_to_js};
-use crate::js::{JsResult, object, optional};
+use crate::formats::Positions;
+use crate::js::clouds::{PointCloud, Precision};
+use crate::js::crs::crs_to_js;
+use crate::js::viewpoints::views_to_js;
+use crate::js::{JsResult, bad_option, from_js, object, optional};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::report::ReduceReport;
 use crate::samples::{self, Model};
@@ -18,7 +20,6 @@ use glam::Vec3;
 use js_sys::{
     Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
 };
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
@@ -91,35 +92,6 @@ pub fn inspect(cloud: &PointCloud, progress: Function) -> JsResult {
     to_js(&pipeline::inspect(&positions, &mut JsProgress(progress))?)
 }
 
-/// Options of [`write`].
-#[derive(Deserialize)]
-struct WriteSettings {
-    format: Option<String>,
-    encoding: Option<String>,
-    #[serde(default)]
-    quantize: bool,
-}
-
-/// [`formats::write`] of `{ format, encoding, quantize }`: the file's bytes.
-#[wasm_bindgen]
-pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValue> {
-    let WriteSettings {
-        format,
-        encoding,
-        quantize,
-    } = from_js(options)?;
-    let name = format.as_deref().unwrap_or("ply");
-    let format = Output::from_name(name)
-        .ok_or_else(|| bad_option("format", "ply, xyz, glb, obj or stl", name))?;
-    let options = WriteOptions {
-        ascii: encoding.as_deref() == Some("ascii"),
-        quantize,
-    };
-    let indices = result.indices().map(|indices| indices.to_vec());
-    let bytes = formats::write(&result.read()?, indices.as_deref(), format, options)?;
-    Ok(Uint8Array::from(&bytes[..]))
-}
-
 /// Options of [`sample`].
 #[derive(Deserialize)]
 struct SampleOptions {
@@ -147,86 +119,6 @@ pub fn sample(options: JsValue) -> JsResult {
         ("positions", Float32Array::from(&scan.positions[..]).into()),
         ("colors", Uint8Array::from(&scan.colors[..]).into()),
     ])
-}
-
-#[wasm_bindgen]
-extern "C" {
-    /// A cloud or mesh of the caller's, its arrays in memory of their own; `pkg/engine/clouds.js` has checked their types.
-    pub type PointCloud;
-    #[wasm_bindgen(method, getter)]
-    fn positions(this: &PointCloud) -> JsValue;
-    #[wasm_bindgen(method, getter)]
-    fn colors(this: &PointCloud) -> Option<Uint8Array>;
-    #[wasm_bindgen(method, getter)]
-    fn normals(this: &PointCloud) -> Option<Float32Array>;
-    #[wasm_bindgen(method, getter)]
-    fn attributes(this: &PointCloud) -> Option<Object>;
-    #[wasm_bindgen(method, getter)]
-    fn origin(this: &PointCloud) -> Option<Array>;
-    #[wasm_bindgen(method, getter)]
-    fn viewpoints(this: &PointCloud) -> Option<PointViews>;
-    #[wasm_bindgen(method, getter)]
-    fn up(this: &PointCloud) -> Option<Array>;
-    #[wasm_bindgen(method, getter, js_name = seenFromAbove)]
-    fn seen_from_above(this: &PointCloud) -> Option<bool>;
-    #[wasm_bindgen(method, getter)]
-    fn indices(this: &PointCloud) -> Option<Uint32Array>;
-}
-
-impl PointCloud {
-    fn read(&self) -> Result<RawCloud, Error> {
-        let positions = self.positions();
-        let positions = match positions.dyn_ref::<Float64Array>() {
-            Some(values) => Positions::F64(values.to_vec()),
-            None => Positions::F32(positions.unchecked_into::<Float32Array>().to_vec()),
-        };
-        let attributes = self.attributes().unwrap_or_default();
-        let points = positions.len() / 3;
-        let viewpoints = self.viewpoints().map(|views| views.read(points));
-        Ok(RawCloud {
-            colors: self.colors().map(|values| values.to_vec()),
-            normals: self.normals().map(|values| values.to_vec()),
-            attributes: Object::entries(&attributes)
-                .iter()
-                .map(|entry| attribute(&entry.unchecked_into()))
-                .collect(),
-            origin: self.origin().map(triple),
-            viewpoints: viewpoints.transpose()?,
-            up: self.up().map(triple),
-            seen_from_above: self.seen_from_above().unwrap_or_default(),
-            ..RawCloud::new(positions)
-        })
-    }
-
-    /// The cloud, and what its positions were in; no second copy of them stays.
-    fn to_cloud(&self) -> Result<(Cloud, Precision), Error> {
-        let raw = self.read()?;
-        let precision = match raw.positions {
-            Positions::F32(_) => Precision::Single,
-            Positions::F64(_) => Precision::Double,
-        };
-        Ok((raw.to_cloud()?, precision))
-    }
-}
-
-/// Type of the positions of a cloud, and of its results.
-#[derive(Clone, Copy)]
-enum Precision {
-    Single,
-    Double,
-}
-
-/// Three numbers.
-fn triple(values: Array) -> [f64; 3] {
-    [0, 1, 2].map(|axis| values.get(axis).as_f64().unwrap_or(0.0))
-}
-
-/// An entry `[name, values]`.
-fn attribute(entry: &Array) -> Attribute {
-    Attribute {
-        name: entry.get(0).as_string().unwrap_or_default(),
-        values: entry.get(1).unchecked_into::<Float32Array>().to_vec(),
-    }
 }
 
 /// A `ReducedCloud` with positions of the input's type.
@@ -319,7 +211,7 @@ fn colors_to_js(colors: &Option<Vec<[u8; 3]>>) -> JsValue {
     optional(colors, |colors| Uint8Array::from(colors.as_flattened()))
 }
 
-/// Adds `attributes`, and the cloud's `origin` and `up`, where there are any.
+/// Adds `attributes`, and the cloud's `origin`, `up`, `unit`, `crs` and `faces`, where there are any.
 fn attach(result: JsValue, attributes: &[Attribute], cloud: &Cloud) -> JsResult {
     if !attributes.is_empty() {
         let table = Object::new();
@@ -335,6 +227,15 @@ fn attach(result: JsValue, attributes: &[Attribute], cloud: &Cloud) -> JsResult 
             Reflect::set(&result, &name.into(), &triple)?;
         }
     }
+    if let Some(unit) = cloud.unit {
+        Reflect::set(&result, &"unit".into(), &unit.name().into())?;
+    }
+    if cloud.crs.is_some() {
+        Reflect::set(&result, &"crs".into(), &crs_to_js(&cloud.crs)?)?;
+    }
+    if cloud.faces > 0 {
+        Reflect::set(&result, &"faces".into(), &(cloud.faces as f64).into())?;
+    }
     Ok(result)
 }
 
@@ -348,7 +249,7 @@ fn sign(report: &mut ReduceReport) {
 struct JsProgress(Function);
 
 impl Progress for JsProgress {
-    fn update(&mut self, stage: Stage, fraction: f32) -> crate::Result<()> {
+    fn update(&mut self, stage: Stage, fraction: f32) -> crate::base::error::Result<()> {
         let answer = self
             .0
             .call2(&JsValue::NULL, &stage.name().into(), &fraction.into());
@@ -359,24 +260,10 @@ impl Progress for JsProgress {
     }
 }
 
-fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
-    Error::BadOption {
-        option: option.into(),
-        expected: expected.into(),
-        found: found.to_string(),
-    }
-}
-
 /// A report or table as a plain object.
 fn to_js(value: &impl Serialize) -> JsResult {
     let serializer = serde_wasm_bindgen::Serializer::new().serialize_maps_as_objects(true);
     value
         .serialize(&serializer)
         .map_err(|error| Error::Internal(error.to_string()).into())
-}
-
-/// Options over their defaults; ranges are checked by the pipeline.
-fn from_js<T: DeserializeOwned>(options: JsValue) -> Result<T, Error> {
-    serde_wasm_bindgen::from_value(options)
-        .map_err(|error| bad_option("options", "the options of the reference", error))
 }

@@ -3,9 +3,14 @@
 //! did; `pkg/files/reading.js` puts them together. The builds of readers have this and nothing else.
 
 use crate::base::error::Error;
-use crate::formats::{Block, ColorValues, Format, Positions, Reading, Stations, Summary};
+#[cfg(feature = "packed")]
+use crate::formats::Archive;
+use crate::formats::{
+    Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
+    Reading, Stations, Summary, Want,
+};
 use crate::js::{JsResult, object, optional};
-use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
+use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 
@@ -14,7 +19,8 @@ thread_local! {
     static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
 }
 
-/// Begins a file of `{ name, format, size }`, the first two optional; one that was being read is given up.
+/// Begins a file of `{ name, format, size, columns, delimiter, decimal, skip, sentinels, faces }`, all but the size optional; one that
+/// was being read is given up.
 #[wasm_bindgen(js_name = readStart)]
 pub fn read_start(options: JsValue) -> Result<(), JsValue> {
     let get = |name: &str| Reflect::get(&options, &name.into());
@@ -24,8 +30,55 @@ pub fn read_start(options: JsValue) -> Result<(), JsValue> {
     };
     let size = get("size")?.as_f64().unwrap_or(0.0) as u64;
     let name = get("name")?.as_string();
-    READING.set(Some(Reading::new(format, name.as_deref(), size)));
+    let reading =
+        Reading::new(format, name.as_deref(), size).with_options(read_options(&options)?)?;
+    READING.set(Some(reading));
     Ok(())
+}
+
+fn read_options(options: &JsValue) -> Result<ReadOptions, JsValue> {
+    let get = |name: &str| Reflect::get(options, &name.into());
+    let mark = |name: &str| Ok::<_, JsValue>(get(name)?.as_string().and_then(|s| s.chars().next()));
+    let columns = get("columns")?;
+    let names = || {
+        Array::from(&columns)
+            .iter()
+            .filter_map(|name| name.as_string())
+            .collect()
+    };
+    Ok(ReadOptions {
+        columns: (!columns.is_undefined()).then(names),
+        delimiter: mark("delimiter")?,
+        decimal: mark("decimal")?,
+        skip: get("skip")?.as_f64().unwrap_or(0.0) as u64,
+        keep_sentinels: get("sentinels")?.as_string().as_deref() == Some("keep"),
+        faces: match get("faces")?.as_string().as_deref() {
+            Some("vertices") => FaceMode::Vertices,
+            _ => FaceMode::Sample,
+        },
+    })
+}
+
+/// What is in a ZIP or gzip archive: `[{ name, content }]`, of the parts that `wanted` names by number, or of all without
+/// content.
+#[cfg(feature = "packed")]
+#[wasm_bindgen(js_name = unpack)]
+pub fn unpack(bytes: &[u8], name: &str, wanted: Option<u32>) -> JsResult {
+    let archive = Archive::open(bytes, Some(name))?;
+    let entries = Array::new();
+    for (i, entry) in archive.entries.iter().enumerate() {
+        let content = match wanted {
+            Some(wanted) if wanted as usize == i => {
+                Uint8Array::from(&archive.unpack(entry)?[..]).into()
+            }
+            _ => JsValue::UNDEFINED,
+        };
+        entries.push(&object([
+            ("name", (&entry.name).into()),
+            ("content", content),
+        ])?);
+    }
+    Ok(entries.into())
 }
 
 /// The next bytes.
@@ -37,7 +90,8 @@ pub fn read_push(bytes: &[u8]) -> JsResult {
     })
 }
 
-/// After the last bytes: `{ block, summary }`, the latter when all is read.
+/// After the last bytes: `{ block, summary, want }`: the second when all is read, the last where something else is needed for
+/// that: `{ file }` by its name, which [`read_file`] gives, or the pixels of a `{ picture }`'s bytes, which [`read_picture`] gives.
 #[wasm_bindgen(js_name = readEnd)]
 pub fn read_end() -> JsResult {
     let answer = with(|reading| {
@@ -45,12 +99,41 @@ pub fn read_end() -> JsResult {
             true => summary(&reading.summary())?,
             false => JsValue::UNDEFINED,
         };
-        object([("block", block(reading)?), ("summary", summary)])
+        let want = match reading.want() {
+            Some(Want::File(name)) => object([("file", name.into())])?,
+            Some(Want::Picture(bytes)) => {
+                object([("picture", Uint8Array::from(&bytes[..]).into())])?
+            }
+            None => JsValue::UNDEFINED,
+        };
+        object([
+            ("block", block(reading)?),
+            ("summary", summary),
+            ("want", want),
+        ])
     })?;
     if Reflect::has(&answer, &"summary".into())? {
         READING.set(None);
     }
     Ok(answer)
+}
+
+/// The content of the file that is wanted; undefined where there is none.
+#[wasm_bindgen(js_name = readFile)]
+pub fn read_file(content: Option<Vec<u8>>) -> JsResult {
+    with(|reading| {
+        reading.give_file(content.as_deref());
+        Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// The pixels of the picture that is wanted; undefined where it is of no kind that is read.
+#[wasm_bindgen(js_name = readPicture)]
+pub fn read_picture(pixels: Option<Vec<u8>>, width: usize, height: usize) -> JsResult {
+    with(|reading| {
+        reading.give_picture(pixels.and_then(|pixels| Picture::new(width, height, pixels)));
+        Ok(JsValue::UNDEFINED)
+    })
 }
 
 /// Does something with the file that is being read; an error ends it.
@@ -120,7 +203,11 @@ fn block(reading: &mut Reading) -> JsResult {
 }
 
 fn summary(summary: &Summary) -> JsResult {
-    let verdict = summary.verdict;
+    let verdict = &summary.verdict;
+    let skipped = Object::new();
+    for (why, count) in &summary.skipped {
+        Reflect::set(&skipped, &(*why).into(), &(*count as f64).into())?;
+    }
     object([
         ("format", summary.format.name().into()),
         ("dropped", (summary.dropped as f64).into()),
@@ -138,6 +225,65 @@ fn summary(summary: &Summary) -> JsResult {
             }),
         ),
         ("seenFromAbove", summary.seen_from_above.into()),
+        (
+            "unit",
+            optional(&summary.unit, |unit| JsValue::from(unit.name())),
+        ),
+        ("crs", crs(summary)?),
+        ("sampled", (summary.sampling.points as f64).into()),
+        (
+            "missing",
+            summary
+                .sampling
+                .missing
+                .iter()
+                .map(JsValue::from)
+                .collect::<Array>()
+                .into(),
+        ),
+        ("attributes", strings(&verdict.attributes)),
+        ("leftOut", left_out(&verdict.left_out)?),
+        ("skipped", skipped.into()),
+        ("columns", strings(&summary.columns)),
+        ("notes", strings(&summary.notes)),
+        (
+            "preview",
+            match &summary.preview {
+                Some(preview) => table(preview)?,
+                None => JsValue::UNDEFINED,
+            },
+        ),
+    ])
+}
+
+fn strings(strings: &[String]) -> JsValue {
+    strings.iter().map(JsValue::from).collect::<Array>().into()
+}
+
+fn left_out(left_out: &LeftOut) -> JsResult {
+    let no_data: Array = left_out
+        .no_data
+        .iter()
+        .map(|values| Float64Array::from(&values[..]))
+        .collect();
+    object([
+        ("huge", left_out.huge.into()),
+        ("noData", no_data.into()),
+        (
+            "noReturns",
+            Float64Array::from(left_out.no_returns.as_flattened()).into(),
+        ),
+    ])
+}
+
+fn table(preview: &Preview) -> JsResult {
+    let rows: Array = preview.rows.iter().map(|row| strings(row)).collect();
+    object([
+        ("rows", rows.into()),
+        ("names", strings(&preview.names)),
+        ("delimiter", String::from(preview.delimiter).into()),
+        ("decimal", String::from(preview.decimal).into()),
+        ("weak", preview.weak.into()),
     ])
 }
 
@@ -155,4 +301,15 @@ fn stations(stations: &Stations) -> JsResult {
         ("starts", Float64Array::from(&starts[..]).into()),
         ("of", Uint32Array::from(&of[..]).into()),
     ])
+}
+
+/// Only LAS has one.
+#[cfg(feature = "las")]
+fn crs(summary: &Summary) -> JsResult {
+    crate::js::crs::crs_to_js(&summary.crs)
+}
+
+#[cfg(not(feature = "las"))]
+fn crs(_: &Summary) -> JsResult {
+    Ok(JsValue::UNDEFINED)
 }

@@ -2,7 +2,8 @@
 
 use crate::base::par;
 use crate::base::params::{COLORS, Carry};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::cloud::{Attribute, Cloud};
 use crate::reduce::placement::{color_key, label_key, majority};
 use glam::Vec3;

@@ -12,9 +12,9 @@ use crate::base::error::Result;
 use crate::base::par;
 use crate::base::params::Boundary;
 use crate::base::progress::{Progress, Stage};
-use crate::mesh::Implicit;
 use crate::mesh::lattice::{Bits, Lattice, Place, corner};
 use crate::mesh::loops::face_corners;
+use crate::mesh::surface::Implicit;
 use glam::{DVec3, IVec3, Vec3};
 
 /// How many cells a seed may be away from the surface. Fitted points are off by their noise, a fraction of the spacing.

@@ -1,7 +1,7 @@
 //! One half-edge collapse: what it costs, and whether it may be made.
 
 use crate::base::lists::Lists;
-use crate::mesh::Mesh;
+use crate::mesh::surface::Mesh;
 use glam::DVec3;
 
 /// A new triangle's normal is within 45° of that of the one it replaces (cosine).

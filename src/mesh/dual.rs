@@ -14,15 +14,13 @@
 
 use crate::base::error::Result;
 use crate::base::par;
-use crate::mesh::Implicit;
 use crate::mesh::creases::{self, Candidate, Crossing, Moved};
 use crate::mesh::lattice::{Lattice, Place, corner};
 use crate::mesh::loops::{LoopTable, Loops, ambiguous_faces, edge_corners, face_corners};
+use crate::mesh::probe::{Probe, Quad, Vertex, clamp};
+use crate::mesh::surface::Implicit;
 use glam::{DVec3, IVec3, Vec3};
 
-/// A vertex keeps this share of the edge length away from its cell's faces: more than `f32` rounds at the finest
-/// resolution (1e-4), less than any error that matters.
-pub(crate) const MARGIN: f64 = 1e-3;
 /// Newton steps towards the zero set; a step that moves less than [`SETTLED`] edges is the last.
 const STEPS: usize = 3;
 /// See [`STEPS`].
@@ -46,39 +44,6 @@ struct Cell {
     filled: bool,
     /// The vertex of its first loop.
     first_vertex: u32,
-}
-
-/// A vertex of the dual mesh.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
-    pub(crate) position: Vec3,
-    /// Unit, or zero where the field has no gradient.
-    pub(crate) normal: Vec3,
-    /// Crossed edges of its loop: the quads around it, if none is left out.
-    pub(crate) degree: u8,
-    /// The quads around it that are there.
-    pub(crate) quads: u8,
-    /// On a crease.
-    pub(crate) sharp: bool,
-}
-
-/// The quad around a crossed edge, to be cut from its first corner to its third; counter-clockwise seen from outside.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Quad {
-    pub(crate) vertices: [u32; 4],
-    /// Axis of the lattice edge.
-    axis: u8,
-    /// Whether the edge runs from inside to outside.
-    rising: bool,
-    /// A cell around the edge has a corner whose value is not from a fitted function.
-    pub(crate) filled: bool,
-}
-
-impl Vertex {
-    /// Whether the surface ends here.
-    pub(crate) fn is_at_end(&self) -> bool {
-        self.quads < self.degree
-    }
 }
 
 /// The dual mesh.
@@ -162,40 +127,6 @@ pub(crate) fn build<F: Implicit>(
     }
     progress(1.0)?;
     Ok(Dual { vertices, quads })
-}
-
-/// Positions and what the field has there; the memory of one worker.
-pub(crate) struct Probe<'a, F: Implicit> {
-    field: &'a F,
-    scratch: F::Scratch,
-    pub(crate) at: Vec<DVec3>,
-    /// Value and gradient; `None` where there is none that can be divided by.
-    pub(crate) found: Vec<Option<(f64, DVec3)>>,
-}
-
-impl<'a, F: Implicit> Probe<'a, F> {
-    fn new(field: &'a F) -> Probe<'a, F> {
-        Probe {
-            field,
-            scratch: field.scratch(),
-            at: Vec::new(),
-            found: Vec::new(),
-        }
-    }
-
-    /// Fills `found` for the positions `at`.
-    pub(crate) fn evaluate(&mut self) {
-        self.found.clear();
-        self.found.resize(self.at.len(), None);
-        self.field
-            .gradients(&self.at, &mut self.found, &mut self.scratch);
-        for found in &mut self.found {
-            *found = found.filter(|(value, gradient)| {
-                let square = gradient.length_squared();
-                value.is_finite() && square.is_finite() && square > 1e-20
-            });
-        }
-    }
 }
 
 /// The crossed cells with their loops.
@@ -438,10 +369,6 @@ fn crossing(edge: usize, values: &[f32; 8]) -> DVec3 {
     let mut at = corner(low).as_dvec3();
     at[edge / 4] = v / (v - w);
     at
-}
-
-pub(crate) fn clamp(inside: DVec3) -> DVec3 {
-    inside.clamp(DVec3::splat(MARGIN), DVec3::splat(1.0 - MARGIN))
 }
 
 /// Turns the quad so that its cut is the better diagonal: both triangles run the right way round along the lattice

@@ -16,7 +16,7 @@ use crate::features::noise::quantile;
 use crate::fit::Fits;
 use crate::fit::cells::Sites;
 use crate::fit::local::LocalFit;
-use crate::mesh::Implicit;
+use crate::mesh::surface::Implicit;
 use crate::orient::Signs;
 use crate::orient::winding::Winding;
 use glam::{DVec3, Vec3};

@@ -9,12 +9,16 @@ use crate::base::lists::pack;
 use crate::base::params::{Boundary, MaxHole};
 use crate::base::sets::Sets;
 use crate::cloud::octree::Octree;
-use crate::mesh::MOST_FILLED;
-use crate::mesh::dual::{Dual, Quad, Vertex};
+use crate::mesh::dual::Dual;
+use crate::mesh::probe::{Quad, Vertex};
 use crate::mesh::trim::components;
 use crate::report::Hole;
 use glam::{DVec3, Vec3};
 
+/// A component of which more than this share of the closed area would be filled is an open sheet, and has only holes that go
+/// on smoothly closed. A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile
+/// 0.5 or more.
+pub const MOST_FILLED: f64 = 0.35;
 /// A hole is a gap of the sampling when its cap is nowhere farther from the points than this many of their reaches, about 4.4
 /// spacings.
 const GAP: f32 = 2.0;

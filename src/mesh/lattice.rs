@@ -3,7 +3,7 @@
 //! Vertices and cells lie in bricks of 8³; cell (x, y, z) has its lowest corner at vertex (x, y, z). A brick holds 512
 //! values and a few sets of 512 bits, and knows its 26 neighbours, so that a step to an adjacent vertex is arithmetic.
 
-use crate::cloud::octree::interleave;
+use crate::cloud::morton::interleave;
 use glam::{DVec3, IVec3, Vec3};
 use std::collections::BTreeMap;
 

@@ -23,8 +23,10 @@ pub mod field;
 pub(crate) mod holes;
 pub(crate) mod lattice;
 pub(crate) mod loops;
+pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
+pub(crate) mod surface;
 pub(crate) mod trim;
 
 use crate::base::error::Result;
@@ -38,29 +40,8 @@ use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use crate::report::Hole;
 use glam::{DVec3, Vec3};
 
-/// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
-/// Positions are in the unit frame.
-pub trait Implicit: Sync {
-    /// Memory that one evaluating worker reuses; what is left in it must not change a result.
-    type Scratch;
-
-    /// A new [`Implicit::Scratch`].
-    fn scratch(&self) -> Self::Scratch;
-
-    /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
-    fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
-
-    /// The fitted values at positions close to each other, one a position; NaN where no fitted function reaches.
-    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch);
-
-    /// The fitted values with their gradients, one a position; `None` where no fitted function reaches.
-    fn gradients(
-        &self,
-        at: &[DVec3],
-        found: &mut [Option<(f64, DVec3)>],
-        scratch: &mut Self::Scratch,
-    );
-}
+pub use crate::mesh::holes::MOST_FILLED;
+pub use crate::mesh::surface::{Implicit, Mesh};
 
 /// Options of [`extract`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,25 +59,6 @@ pub struct ExtractParams {
     pub most: Option<usize>,
 }
 
-/// A triangle mesh in the unit frame.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Mesh {
-    /// Positions; every one is used by a triangle.
-    pub vertices: Vec<Vec3>,
-    /// Unit normals that point outward, one a vertex.
-    pub normals: Vec<Vec3>,
-    /// Vertex indices, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl Mesh {
-    /// Turns it to its other side.
-    pub fn invert(&mut self) {
-        self.normals.iter_mut().for_each(|n| *n = -*n);
-        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-}
-
 /// What [`extract`] makes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Extracted {
@@ -111,11 +73,6 @@ pub struct Extracted {
     /// Holes that were closed and rims that were left open, the widest first.
     pub holes: Vec<Hole>,
 }
-
-/// A component of which more than this share of the closed area would be filled is an open sheet, and has only holes that go
-/// on smoothly closed. A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile
-/// 0.5 or more.
-pub const MOST_FILLED: f64 = 0.35;
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
 ///

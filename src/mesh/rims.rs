@@ -1,7 +1,7 @@
 //! Smooth ends of open surfaces: the lattice leaves them in steps.
 
 use crate::base::lists::{Lists, pack, unpack};
-use crate::mesh::Mesh;
+use crate::mesh::surface::Mesh;
 use glam::DVec3;
 
 /// Sweeps over the rim. Steps are one or two cells long; each sweep halves what is shorter than about three.

@@ -18,8 +18,8 @@
 use crate::base::error::Result;
 use crate::base::lists::{key, pack, unpack};
 use crate::base::par;
-use crate::mesh::Mesh;
 use crate::mesh::collapse::{Around, Collapse, Rules, Star, around, can_collapse};
+use crate::mesh::surface::Mesh;
 
 /// Curvature that every edge is taken to have on top of its own, as the turn of the normals along one edge of the
 /// lattice: it keeps flat parts even. By measurement on four models that the bench does not use: 0.01 and 0.05 change the

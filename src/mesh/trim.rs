@@ -6,7 +6,8 @@ use crate::base::lists::{Lists, key, of_key, pack, unpack};
 use crate::base::par;
 use crate::base::sets::Sets;
 use crate::cloud::octree::Octree;
-use crate::mesh::dual::{Dual, Quad, Vertex};
+use crate::mesh::dual::Dual;
+use crate::mesh::probe::{Quad, Vertex};
 use crate::orient::SMALLEST;
 use glam::Vec3;
 

@@ -125,12 +125,15 @@ fn weakest_tie(solved: &Solved, areas: &[f32], total: f32) -> Option<WeakestTie>
         let members = parts.members.of(p);
         let source = solved.sources[members[0] as usize];
         let is_known = !matches!(source, Source::Shell | Source::Up | Source::Guess);
-        let (Some(holds), false, true) = (holds, is_known, sums[p as usize] > LARGE * total) else {
+        // What would turn is the part, or all but the part where that is less.
+        let area = sums[p as usize].min(total - sums[p as usize]);
+        let count = members.len().min(solved.signs.len() - members.len());
+        let (Some(holds), false, true) = (holds, is_known, area > LARGE * total) else {
             continue;
         };
         let tie = WeakestTie {
-            share: f64::from(sums[p as usize] / total),
-            strength: f64::from(holds / (members.len() as f32).sqrt()),
+            share: f64::from(area / total),
+            strength: f64::from(holds / (count as f32).sqrt()),
         };
         if weakest.is_none_or(|w| tie.strength < w.strength) {
             weakest = Some(tie);

@@ -8,7 +8,7 @@ use crate::orient::camera;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Edge, energy};
 use crate::orient::parts::Parts;
-use crate::reduce::clusters::Shares;
+use crate::reduce::shares::Shares;
 use glam::Vec3;
 
 /// The evidence of a cloud: vectors that outward normals agree with, up to unit length by how much they count; empty where a
@@ -41,7 +41,7 @@ pub(crate) const SOME: f32 = 0.1;
 const BODY: f64 = 0.25;
 /// Weights of sources against an edge of full agreement. Up must not cut a body in two.
 const SEEN: f32 = 1.0;
-const UPWARD: f32 = 0.2;
+const UPWARD: f32 = 1.0;
 
 impl Evidence {
     /// Of each of `count` reduced points, by the input points that have most of their share in it; `shares` in the order of

@@ -15,7 +15,7 @@
 //! - its ties, and what is seen together from far away ([`seen`]).
 //!
 //! A closed component that lies in the solid of an odd number of others is a cave's wall, and looks into the cave ([`caves`]).
-//! Last, the winding number of the whole is asked: a part without evidence of its own that it says is inside out turns.
+//! Last, the winding number of the whole is asked ([`inverted`]): it knows what is inside out where little ties it.
 
 pub mod account;
 pub(crate) mod camera;
@@ -24,6 +24,7 @@ pub(crate) mod descent;
 pub(crate) mod domains;
 pub mod evidence;
 pub(crate) mod graph;
+pub(crate) mod inverted;
 pub(crate) mod paper;
 pub(crate) mod parts;
 pub(crate) mod seen;
@@ -37,10 +38,11 @@ use crate::fit::Fits;
 use crate::fit::cells::Sites;
 use crate::orient::account::{Account, Source};
 use crate::orient::caves::turn_caves;
-use crate::orient::descent::descend;
+use crate::orient::descent::{descend, settle};
 use crate::orient::domains::{Domains, mean_winding};
 use crate::orient::evidence::{Evidence, Known};
 use crate::orient::graph::{Adjacency, Edge, adjacency, components, edges, energy, spanning_signs};
+use crate::orient::inverted::Inverted;
 use crate::orient::paper::{advancing_front, turn_outward};
 use crate::orient::parts::Parts;
 use crate::orient::sides::turn_parts;
@@ -190,9 +192,15 @@ impl Solve<'_> {
             parts = Parts::new(domains, self.edges, &signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
-        descend(self.edges, &known.unary, &mut signs);
+        settle(self.edges, &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
-        self.turn_inverted(&parts, &by_part, &mut signs);
+        Inverted {
+            domains,
+            edges: self.edges,
+            adjacency: self.adjacency,
+            is_known: known.values.iter().map(|&x| x != 0.0).collect(),
+        }
+        .turn(&parts, &mut signs);
         let mut sources: Vec<Source> = parts.of.iter().map(|&p| by_part[p as usize]).collect();
         for (source, known) in sources.iter_mut().zip(&known.sources) {
             if *known != Source::Guess {
@@ -222,44 +230,6 @@ impl Solve<'_> {
             .filter(|c| self.domains.enclosed(c, signs) > CLOSED)
             .collect();
         turn_caves(&solids, self.domains, signs);
-    }
-
-    /// Turns the parts whose winding number says that they are inside out, and leaves those turned for which that mends it: a
-    /// sheet beside a wrong one has the winding number of an inverted one, turned or not.
-    fn turn_inverted(&self, parts: &Parts, by_part: &[Source], signs: &mut [f32]) {
-        /// Half way from what says nothing, 0, to what an inverted closed surface has.
-        const INVERTED: f64 = -0.25;
-        /// Sub-domains of each part that are asked, at most.
-        const ASKED: usize = 100;
-        let is_free = |p: u32| {
-            matches!(
-                by_part[p as usize],
-                Source::Shell | Source::Up | Source::Guess
-            )
-        };
-        let members = |p: &u32| {
-            let members = parts.members.of(*p);
-            let step = members.len().div_ceil(ASKED);
-            members.iter().step_by(step).copied()
-        };
-        // Of these parts those with a mean winding number under the limit.
-        let under = |which: &[u32], limit: f64, signs: &[f32]| -> Vec<u32> {
-            let asked: Vec<u32> = which.iter().flat_map(members).collect();
-            let mut around = self.domains.winding(&asked, signs).into_iter();
-            let mut mean = |p: &u32| {
-                let n = members(p).count();
-                around.by_ref().take(n).sum::<f64>() / n as f64
-            };
-            which.iter().filter(|p| mean(p) < limit).copied().collect()
-        };
-        let free: Vec<u32> = (0..parts.count() as u32).filter(|&p| is_free(p)).collect();
-        let inverted = under(&free, INVERTED, signs);
-        if inverted.is_empty() {
-            return;
-        }
-        inverted.iter().for_each(|&p| parts.turn(p, signs));
-        let wrong = under(&inverted, 0.0, signs);
-        wrong.iter().for_each(|&p| parts.turn(p, signs));
     }
 }
 

@@ -13,7 +13,7 @@ use glam::Vec3;
 
 /// Two pieces, the smaller of n sub-domains, are one part when their tie is more than this times √n. Of 0.4 to 3 on vases,
 /// cups and boxes on tables of 1,500 to 8,000 points: under 1 some join across the table, from 1.5 on all are right.
-const WEAK: f32 = 1.5;
+pub(crate) const WEAK: f32 = 1.5;
 /// A piece of fewer sub-domains joins what it is tied to by more than half of all that ties it.
 const SMALL: usize = 12;
 /// Cosine of the largest turn from one sub-domain to the next within a smooth piece.

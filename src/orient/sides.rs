@@ -4,22 +4,25 @@ use crate::orient::account::Source;
 use crate::orient::descent::descend;
 use crate::orient::domains::Domains;
 use crate::orient::evidence::{Evidence, Known};
-use crate::orient::graph::Edge;
-use crate::orient::parts::Parts;
+use crate::orient::graph::{Edge, adjacency, components};
+use crate::orient::parts::{Parts, Tie};
 use crate::orient::seen::together;
 use glam::Vec3;
 
 /// Mean agreement with the evidence from which on a part needs nothing else.
 const KNOWN: f32 = 0.05;
 /// Mean winding number over a part's own sites from which on it is a shell with an inside: ½ where it is closed, 0.28 to 0.36
-/// for vases and bins, under 0.03 for terrains and discs.
-const SHELL: f32 = 0.08;
+/// for vases and bins, under 0.03 for discs and gentle terrains, 0.09 for a steep one.
+const SHELL: f32 = 0.12;
 /// How evidence, a shell at most and up count against each other, times √ the sub-domains.
 const EVIDENCE: f32 = 4.0;
 const CLOSED: f32 = 4.0;
 const UPWARD: f32 = 0.3;
 /// Share of a sheet's mean normal that is along up, for up to say anything.
 const ALONG: f32 = 0.2;
+
+/// Parts are a group when what ties them is more than this times √ the sub-domains of the smaller.
+const TIED: f32 = 0.5;
 
 /// What a part says of its own side.
 #[derive(Debug, Clone, Copy)]
@@ -37,9 +40,10 @@ pub(crate) fn turn_parts(
     evidence: &Evidence,
     signs: &mut [f32],
 ) -> Vec<Source> {
-    let votes: Vec<Vote> = (0..parts.count() as u32)
+    let mut votes: Vec<Vote> = (0..parts.count() as u32)
         .map(|p| vote(domains, parts.members.of(p), known, evidence, signs))
         .collect();
+    ask_groups(domains, parts, signs, &mut votes);
     let mut said: Vec<(u32, u32, f32)> =
         parts.ties.iter().map(|t| (t.a, t.b, t.strength)).collect();
     if votes
@@ -47,6 +51,40 @@ pub(crate) fn turn_parts(
         .any(|v| matches!(v.source, Source::Shell | Source::Up | Source::Guess))
     {
         said.extend(together(domains, parts, signs));
+    }
+    if std::env::var("DBG").is_ok() {
+        for p in 0..parts.count() as u32 {
+            let m = parts.members.of(p);
+            if m.len() < 3 {
+                continue;
+            }
+            let c = m
+                .iter()
+                .map(|&s| {
+                    domains.sites.tree.points
+                        [domains.fits.subdomains[s as usize].support[0] as usize]
+                })
+                .sum::<Vec3>()
+                / m.len() as f32;
+            eprintln!(
+                "part {p} n {} at {c:.2} vote {:?} {:.2} shell {:.3}",
+                m.len(),
+                votes[p as usize].source,
+                votes[p as usize].weight,
+                domains.enclosed(m, signs)
+            );
+        }
+        for t in &parts.ties {
+            if parts.members.of(t.a).len().min(parts.members.of(t.b).len()) >= 3 {
+                eprintln!(
+                    "  tie {} {} sum {:.2} strength {:.2}",
+                    t.a, t.b, t.sum, t.strength
+                );
+            }
+        }
+        for (a, b, w) in &said[parts.ties.len()..] {
+            eprintln!("  seen {a} {b} {w:.2}");
+        }
     }
     let edges: Vec<Edge> = said
         .into_iter()
@@ -56,10 +94,62 @@ pub(crate) fn turn_parts(
     let unary: Vec<f32> = votes.iter().map(|v| v.weight).collect();
     let mut turned = vec![1.0; parts.count()];
     descend(&edges, &unary, &mut turned);
+    if std::env::var("DBG").is_ok() {
+        for p in 0..parts.count() {
+            if parts.members.of(p as u32).len() > 2 {
+                eprintln!("turned {p} {}", turned[p]);
+            }
+        }
+        eprintln!("sum of votes {}", unary.iter().sum::<f32>());
+    }
     for (&p, sign) in parts.of.iter().zip(signs.iter_mut()) {
         *sign *= turned[p as usize];
     }
     decided(&votes, &edges, &turned)
+}
+
+/// Faces that are parts of their own, of a box of few points: what parts without an inside of their own enclose together is
+/// what decides for each.
+fn ask_groups(domains: &Domains, parts: &Parts, signs: &[f32], votes: &mut [Vote]) {
+    let size = |p: u32| parts.members.of(p).len() as f32;
+    let is_tied = |t: &&Tie| t.strength.abs() > TIED * size(t.a).min(size(t.b)).sqrt();
+    let tied: Vec<Edge> = parts
+        .ties
+        .iter()
+        .filter(is_tied)
+        .map(|t| Edge {
+            a: t.a,
+            b: t.b,
+            weight: t.strength,
+        })
+        .collect();
+    let mut turned = vec![1.0; parts.count()];
+    descend(&tied, &vec![0.0; parts.count()], &mut turned);
+    for group in components(&adjacency(parts.count(), &tied)) {
+        let is_open = |p: &u32| matches!(votes[*p as usize].source, Source::Up | Source::Guess);
+        if group.len() < 2 || !group.iter().all(is_open) {
+            continue;
+        }
+        let mut signs = signs.to_vec();
+        for &p in group.iter().filter(|&&p| turned[p as usize] < 0.0) {
+            parts.turn(p, &mut signs);
+        }
+        let members: Vec<u32> = group
+            .iter()
+            .flat_map(|&p| parts.members.of(p))
+            .copied()
+            .collect();
+        let shell = domains.enclosed(&members, &signs) as f32;
+        if shell.abs() > SHELL {
+            for &p in &group {
+                let weight = (shell / SHELL).clamp(-CLOSED, CLOSED) * size(p).sqrt();
+                votes[p as usize] = Vote {
+                    source: Source::Shell,
+                    weight: weight * turned[p as usize],
+                };
+            }
+        }
+    }
 }
 
 fn vote(

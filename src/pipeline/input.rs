@@ -142,6 +142,9 @@ impl Input<'_> {
             viewpoints,
             up,
             seen_from_above,
+            unit,
+            crs,
+            faces,
         } = cloud;
         let (of, tree) = (&self.cloud, &self.tree);
         let place = |(&p, &i): (&Vec3, &u32)| points[i as usize] == p;
@@ -151,6 +154,7 @@ impl Input<'_> {
             && tree.points.iter().zip(&tree.order).all(place)
             && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
             && (&of.viewpoints, of.up, of.seen_from_above) == (viewpoints, *up, *seen_from_above)
+            && (of.unit, &of.crs, of.faces) == (*unit, crs, *faces)
     }
 }
 

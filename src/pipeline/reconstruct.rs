@@ -152,10 +152,9 @@ fn surface(
     let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
     drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
-    let noise = noise.all;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
     let input_of = (&input[..], stands_for);
-    let fits = fit::fit(subdomains, &sites, input_of, noise, params, &mut clock)?;
+    let fits = fit::fit(subdomains, &sites, input_of, noise.all, params, &mut clock)?;
     reduced.shares = Vec::new();
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
@@ -222,9 +221,13 @@ fn surface(
     origin.restore(&mut reduced);
     let residuals = || fits.residuals.iter().map(|&r| r as f64);
     let beyond = residuals().filter(|&r| r > params.accuracy).count();
+    let (low, high) = world_box(&input, &reduced.cloud);
+    let mut doubts = report.doubts.clone();
+    doubts.extend(report::doubts_of_shape(low, high, report.distance.rms));
+    doubts.extend(report::doubts(&signs.account));
     let surface_report = SurfaceReport {
         reduce: ReduceReport {
-            doubts: report::doubts(&signs.account),
+            doubts,
             ..report.clone()
         },
         triangles: mesh.triangles.len(),
@@ -249,6 +252,18 @@ fn surface(
         distances,
         report: surface_report,
     })
+}
+
+/// Corners of the bounding box of points in the cloud's unit frame, in world coordinates.
+fn world_box(points: &[Vec3], cloud: &Cloud) -> ([f64; 3], [f64; 3]) {
+    let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let origin = cloud.origin.unwrap_or_default();
+    let world = |corner| {
+        let p = cloud.frame.to_caller(corner);
+        [0, 1, 2].map(|axis| p[axis] + origin[axis])
+    };
+    (world(low), world(high))
 }
 
 /// Whether strays are dropped before a surface is made.

@@ -9,8 +9,10 @@ use crate::cloud::octree::Octree;
 use crate::cloud::{Cloud, in_frame};
 use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::results::ReducedCloud;
+use crate::pipeline::sites::Noise;
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
+use crate::report;
 use crate::report::{DistanceStats, ReduceReport};
 use glam::Vec3;
 use std::borrow::Cow;
@@ -55,7 +57,7 @@ fn reduce_cloud(
         features,
         origin,
     } = Input::new(cloud, params.outliers, &mut clock)?;
-    let noise = features.noise;
+    let noise = Noise::of(&features);
     let mut reduced = reduce::reduce(&cloud, &tree, features.into_owned(), params, &mut clock)?;
     drop(cloud);
     let points = tree.into_owned().into_points();
@@ -76,7 +78,7 @@ pub(crate) fn near_stats(points: &[Vec3], distances: impl Iterator<Item = f64>) 
 
 /// What a reduction did, alone or before a surface.
 pub(crate) fn reduce_report(
-    (origin, noise): (&Origin, f32),
+    (origin, noise): (&Origin, Noise),
     reduced: &Reduced,
     distance: DistanceStats,
     clock: &Clock,
@@ -90,7 +92,7 @@ pub(crate) fn reduce_report(
         objective: reduced.stats.objective,
         validity: reduced.stats.validity,
         evenness: reduced.stats.evenness,
-        noise: noise as f64,
+        noise: noise.all.into(),
         sharp_points: reduced.stats.kept,
         distance,
         ms: clock.times.clone(),
@@ -109,6 +111,11 @@ pub(crate) fn reduce_report(
             .filter(|reason| !reason.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
+        doubts: [
+            report::doubts_of_faces(reduced.cloud.faces),
+            report::doubts_of_steps(noise.steps),
+        ]
+        .concat(),
         ..Default::default()
     }
 }

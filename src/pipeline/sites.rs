@@ -72,7 +72,7 @@ fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
 pub(crate) struct Noise {
     pub(crate) all: f32,
     /// See [`Features::steps`].
-    steps: f32,
+    pub(crate) steps: f32,
 }
 
 impl Noise {

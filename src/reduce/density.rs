@@ -18,7 +18,8 @@ use glam::Vec3;
 
 use crate::base::par;
 use crate::cloud::neighborhood::{Block, CELL, Neighborhood, bounds, even_reach};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::features::Features;
 
 /// Smallest spacing, as a share of the mean: three times the mean density.

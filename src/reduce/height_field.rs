@@ -16,8 +16,9 @@ use crate::base::lanes::{LANES, Lanes};
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
 use crate::cloud::neighborhood::{Block, CELL, Neighborhood, bounds};
-use crate::cloud::octree::{Neighbor, Octree};
-use crate::reduce::clusters::{SHARES, Shares};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
+use crate::reduce::shares::{SHARES, Shares};
 
 /// Reduced points around one that make up its patch, about.
 const NEIGHBORS: usize = 8;

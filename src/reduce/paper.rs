@@ -22,12 +22,13 @@ use crate::base::par;
 use crate::base::params::{Clusters, Method, ReduceParams, Target};
 use crate::base::power::Fuzzifier;
 use crate::base::progress::{Progress, Stage};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::features::Features;
-use crate::reduce::Clustering;
-use crate::reduce::clusters::Shares;
+use crate::reduce::clustering::Clustering;
 use crate::reduce::density;
 use crate::reduce::fcm::{Fcm, FcmParams, Start};
+use crate::reduce::shares::Shares;
 
 /// λ of section 5 where the target is not flatness.
 const LAMBDA: f64 = 3e-4;
@@ -113,7 +114,7 @@ pub fn cluster(
         tree.points.len(),
         Vec::new,
         |k, found: &mut Vec<Neighbor>| {
-            index.knn(tree.points[k], crate::reduce::clusters::SHARES, found);
+            index.knn(tree.points[k], crate::reduce::shares::SHARES, found);
             let near = found.iter().map(|n| index.order[n.index as usize]);
             Shares::of(tree.points[k], &centers, near, fuzzifier)
         },

@@ -15,10 +15,11 @@ use crate::base::lists::{key, ranked, unpack};
 use crate::base::par;
 use crate::base::params::{COLORS, Carry, Placement};
 use crate::base::power::Fuzzifier;
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use crate::cloud::{Attribute, Cloud};
 use crate::features::Features;
-use crate::reduce::clusters::Shares;
+use crate::reduce::shares::Shares;
 
 /// τ of A_k: how much a distance along the surface counts against one across it.
 const TAU: f64 = 0.03;
@@ -349,6 +350,9 @@ pub fn carry(
             .map(|v| v.select(each.clone().map(closest))),
         up: cloud.up,
         seen_from_above: cloud.seen_from_above,
+        unit: cloud.unit,
+        crs: cloud.crs.clone(),
+        faces: cloud.faces,
     }
 }
 
@@ -384,7 +388,7 @@ pub(crate) fn color_key([r, g, b]: [u8; 3]) -> u32 {
 mod tests {
     use super::*;
     use crate::base::rng::Rng;
-    use crate::reduce::clusters::SHARES;
+    use crate::reduce::shares::SHARES;
 
     #[test]
     fn members_are_the_points_with_a_share() {

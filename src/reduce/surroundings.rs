@@ -5,7 +5,8 @@ use glam::Vec3;
 use crate::base::lanes::{LANES, Lanes};
 use crate::base::par;
 use crate::cloud::neighborhood::{Block, CELL, Neighborhood, bounds};
-use crate::cloud::octree::{Neighbor, Octree};
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 
 /// Radius within which neighbours balance each other, in spacings: the first ring of a lattice of centres.
 const RING: f32 = 1.7;

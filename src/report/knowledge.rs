@@ -23,6 +23,70 @@ const AGREE: f64 = 0.8;
 /// [`crate::orient::account::WeakestTie::strength`] under which a side is as good as a guess.
 const WEAK: f64 = 0.3;
 
+/// A mesh that is farther from the points than this share of the diagonal (root mean square) is none to rely on.
+const FAR: f64 = 0.01;
+/// A piece of land is at most so many degrees wide, and hardly a hundredth as many metres high.
+const DEGREES: f64 = 5.0;
+const STRETCHED: f64 = 100.0;
+
+/// What may be wrong with the shape as a whole: `low` and `high` are the corners of the points' bounding box in world coordinates,
+/// `rms` is their distance to the mesh.
+pub(crate) fn doubts_of_shape(low: [f64; 3], high: [f64; 3], rms: f64) -> Vec<Doubt> {
+    let doubt = |code, message: &str| Doubt {
+        code,
+        message: message.into(),
+        share: None,
+    };
+    let [width, depth, height] = [0, 1, 2].map(|a| high[a] - low[a]);
+    let on_globe = |axis: usize, most: f64| low[axis] >= -most && high[axis] <= most;
+    let across = width.max(depth);
+    let is_land = across > 0.0 && across < DEGREES && height > STRETCHED * across;
+    if is_land && on_globe(0, 180.0) && on_globe(1, 90.0) {
+        return vec![doubt(
+            "degrees-as-lengths",
+            "x and y look like degrees of longitude and latitude, and z like metres, so the shape is drawn out: convert the \
+             scan to a projected coordinate system first.",
+        )];
+    }
+    if rms > FAR {
+        return vec![doubt(
+            "far-from-points",
+            "The mesh is not close to the points: there are too few of them to tell where the surface is, or some lie far \
+             from the rest.",
+        )];
+    }
+    Vec::new()
+}
+
+/// What is to be said of coordinates that were rounded: `steps` is the standard deviation of that (fraction of the diagonal).
+pub(crate) fn doubts_of_steps(steps: f32) -> Vec<Doubt> {
+    if steps == 0.0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "steps",
+        message: format!(
+            "The coordinates were rounded to steps of {:.2} % of the diagonal: detail as fine as that is smoothed away.",
+            100.0 * steps * 12f32.sqrt()
+        ),
+        share: None,
+    }]
+}
+
+/// What is to be said of points that were taken from `faces`, where they were.
+pub(crate) fn doubts_of_faces(faces: u64) -> Vec<Doubt> {
+    if faces == 0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "sampled-from-faces",
+        message: format!(
+            "The file is a mesh: its points were taken from {faces} faces, evenly over their area."
+        ),
+        share: None,
+    }]
+}
+
 /// What may be wrong with the sides.
 pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
     let mut doubts = Vec::new();
@@ -73,4 +137,30 @@ pub(crate) fn doubts(account: &Account) -> Vec<Doubt> {
         doubt("weak-tie", tie.share, message);
     }
     doubts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(center: [f64; 3], size: [f64; 3], rms: f64) -> Vec<&'static str> {
+        let corner = |side: f64| [0, 1, 2].map(|a| center[a] + side * size[a]);
+        let doubts = doubts_of_shape(corner(-0.5), corner(0.5), rms);
+        doubts.iter().map(|doubt| doubt.code).collect()
+    }
+
+    #[test]
+    fn a_shape_that_is_better_not_relied_on() {
+        assert!(codes([0.0; 3], [1.0, 2.0, 3.0], 5e-4).is_empty());
+        assert_eq!(codes([0.0; 3], [1.0, 2.0, 3.0], 0.03), ["far-from-points"]);
+        let tile = [0.0228, 0.0106, 39.0];
+        assert_eq!(
+            codes([-95.0, 31.0, 60.0], tile, 1e-4),
+            ["degrees-as-lengths"]
+        );
+        // A pole on a map in metres; a statue in metres; points on a line.
+        assert!(codes([637_000.0, 849_000.0, 60.0], [0.02, 0.01, 39.0], 1e-4).is_empty());
+        assert!(codes([0.0; 3], [0.5, 0.5, 2.0], 1e-4).is_empty());
+        assert!(codes([0.0; 3], [0.0, 0.0, 2.0], 1e-4).is_empty());
+    }
 }

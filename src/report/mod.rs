@@ -14,7 +14,7 @@ use serde::Serialize;
 pub use crate::base::clock::StageTimes;
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
-pub(crate) use knowledge::doubts;
+pub(crate) use knowledge::{doubts, doubts_of_faces, doubts_of_shape, doubts_of_steps};
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

@@ -6,7 +6,7 @@
 //! and adds up where poses overlap, and what no pose sees stays empty. Returns at less than 7° to the surface are
 //! dropped, as real scanners do. The range along the ray carries Gaussian noise.
 
-use super::Model;
+use super::model::Model;
 use crate::base::par;
 use crate::base::rng::Rng;
 use glam::DVec3;

@@ -9,8 +9,8 @@ use glam::{DVec3, Vec3};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::octree::Octree;
-use pointweave::reduce::clusters::{SHARES, Shares};
 use pointweave::reduce::height_field::{Patches, cloud_distances};
+use pointweave::reduce::shares::{SHARES, Shares};
 use std::f64::consts::{PI, TAU};
 
 /// A closed surface of known truth.

@@ -20,7 +20,7 @@ test('importing it on a server does nothing, and needs no three.js', async () =>
 test('properties say what attributes say, and the other way round', async () => {
   const shown = await site.open('<point-weave></point-weave>');
   const seen = await shown.element().evaluate((element) => {
-    const defaults = Object.fromEntries(['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'autoRotate', 'controls', 'loading', 'up'].map((name) => [name, element[name]]));
+    const defaults = Object.fromEntries(['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'autoRotate', 'controls', 'loading', 'up', 'orientation', 'flip'].map((name) => [name, element[name]]));
     /** Sets an attribute and reads the property. */
     const read = (attribute, value, name = attribute) => {
       element.setAttribute(attribute, value);
@@ -39,19 +39,21 @@ test('properties say what attributes say, and the other way round', async () => 
       threads: ['2', '64', '65', '0', 'auto', 'x'].map((value) => read('threads', value)),
       loading: ['eager', 'lazy', 'never'].map((value) => read('loading', value)),
       up: ['z', '-Y', 'w'].map((value) => read('up', value)),
-      flags: [read('controls', 'false'), read('controls', ''), read('auto-rotate', '', 'autoRotate')],
+      orientation: ['Inward', 'up', 'down'].map((value) => read('orientation', value)),
+      flags: [read('flip', ''), read('controls', 'false'), read('controls', ''), read('auto-rotate', '', 'autoRotate')],
       written: [write('ratio', 0.25), write('ratio', null), write('count', 7), write('count', undefined), write('view', 'points'), write('threads', 3),
         write('autoRotate', false, 'auto-rotate'), write('autoRotate', 1, 'auto-rotate'), write('controls', true), write('controls', ''), write('alt', ''), write('src', null)],
     };
   });
-  assert.deepEqual(seen.defaults, { src: '', alt: '', ratio: null, count: null, view: 'mesh', poster: '', threads: 'auto', autoRotate: false, controls: false, loading: 'lazy', up: 'auto' });
+  assert.deepEqual(seen.defaults, { src: '', alt: '', ratio: null, count: null, view: 'mesh', poster: '', threads: 'auto', autoRotate: false, controls: false, loading: 'lazy', up: 'auto', orientation: 'auto', flip: false });
   assert.deepEqual(seen.ratio, [0.3, 1, 0.01, null, null, null, null, null]);
   assert.deepEqual(seen.count, [12, null, null, null, 4294967295, null]);
   assert.deepEqual(seen.view, ['points', 'reduced', 'mesh', 'mesh', 'mesh']);
   assert.deepEqual(seen.threads, [2, 64, 'auto', 'auto', 'auto', 'auto']);
   assert.deepEqual(seen.loading, ['eager', 'lazy', 'lazy']);
   assert.deepEqual(seen.up, ['z', '-y', 'auto']);
-  assert.deepEqual(seen.flags, [true, true, true]);
+  assert.deepEqual(seen.orientation, ['inward', 'up', 'auto']);
+  assert.deepEqual(seen.flags, [true, true, true, true]);
   assert.deepEqual(seen.written, ['0.25', null, '7', null, 'points', '3', null, '', '', null, '', null]);
   assert.deepEqual(shown.faults, []);
 });

@@ -17,6 +17,9 @@ export function use() {
   element.ratio = 0.3;
   element.count = null;
   element.threads = 'auto';
+  element.orientation = 'inward';
+  element.flip = true;
+  console.log(element.report?.doubts.map(({ code, message, share = 1 }) => [code, message, share]));
   element.addEventListener('progress', ({ detail }) => console.log(detail.stage, detail.overall.toFixed(2)));
   element.addEventListener('load', ({ detail }: CustomEvent<LoadDetail>) => console.log(detail.view satisfies View, detail.report?.outputPoints));
   element.addEventListener('error', ({ detail }) => console.log(detail.error.code));

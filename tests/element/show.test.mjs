@@ -64,6 +64,37 @@ test('progress goes from the file to the result and never back; the points come 
   assert.equal(await shown.spoken(), `A toy duck. Mesh of ${load.triangles.toLocaleString('en')} triangles`);
 });
 
+test('what may be wrong is the title of the picture, and spoken; orientation and flip turn the mesh', async () => {
+  const hills = Array.from({ length: 1600 }, (_, i) => [i % 40, Math.floor(i / 40)].map((k) => k / 10 - 2));
+  site.put('/hills.xyz', Buffer.from(hills.map(([x, y]) => `${x} ${y} ${0.3 * Math.sin(2 * x) * Math.cos(1.7 * y)}`).join('\n')));
+  const shown = await site.open('<point-weave src="/hills.xyz" alt="Hills"></point-weave>');
+  await shown.loaded();
+  const state = () => shown.element().evaluate(({ report, shadowRoot }) => ({
+    doubts: report.doubts.map(({ code, message }) => [code, message]),
+    sources: report.orientation.sources.filter(({ share }) => share > 0).map(({ source }) => source),
+    title: shadowRoot.querySelector('canvas').title,
+  }));
+  const guessed = await state();
+  assert.deepEqual(guessed.doubts.map(([code]) => code), ['side-guessed']);
+  assert.deepEqual(guessed.sources, ['guess']);
+  assert.equal(guessed.title, guessed.doubts[0][1]);
+  assert.ok((await shown.spoken()).endsWith(`triangles. ${guessed.title}`), await shown.spoken());
+
+  const loads = async () => (await shown.events()).filter(({ type }) => type === 'load').length;
+  assert.equal(await loads(), 1);
+  await shown.element().evaluate((element) => element.toggleAttribute('flip', true));
+  await shown.loaded();
+  await shown.set({ orientation: 'up' });
+  await shown.loaded();
+  const told = await state();
+  assert.deepEqual([told.doubts, told.title], [[], '']);
+  assert.equal(await loads(), 3);
+  await shown.set({ view: 'points' });
+  await shown.loaded();
+  assert.equal(await shown.element().evaluate(({ report }) => report), null);
+  assert.deepEqual(shown.faults, []);
+});
+
 test('an XYZ file, which stands as it is told to', async () => {
   site.put('/tall.xyz', boxScan([1, 1, 3]));
   const shown = await site.open('<point-weave src="/tall.xyz" alt="A box" view="points"></point-weave>');

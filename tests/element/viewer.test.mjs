@@ -186,6 +186,54 @@ test('a wheel over a picture that is the page zooms, and a scan that is wider th
   assert.ok(silhouette(await picture()).area > 1.2 * far);
 });
 
+test('a right drag moves, the middle button comes nearer, two fingers move and pinch, a swipe scrolls the page', async () => {
+  const { act, page, picture } = await open('<canvas style="width: 400px; height: 300px; display: block" aria-label="A box"></canvas><div style="height: 3000px"></div>', {}, { hasTouch: true });
+  await act(() => viewer.show(box));
+  const place = async () => silhouette(await picture()).box;
+  const pose = () => act(() => viewer.pose);
+  const { x, y } = await page.locator('canvas').boundingBox();
+  const first = await place();
+  const drag = async (button, dx, dy) => {
+    await page.mouse.move(x + 200, y + 150);
+    await page.mouse.down({ button });
+    await page.mouse.move(x + 200 + dx, y + 150 + dy, { steps: 4 });
+    await page.mouse.up({ button });
+    await act(() => {});
+  };
+  await drag('right', 40, 30);
+  const moved = await place();
+  assert.ok(Math.abs(moved.left - first.left - 40) < 8 && Math.abs(moved.top - first.top - 30) < 8, `${moved.left - first.left}, ${moved.top - first.top}`);
+  await act(() => viewer.home());
+  await drag('middle', 0, -100);
+  assert.ok((await pose()).zoom > 1.05);
+  await act(() => viewer.home());
+  const { azimuth } = await pose();
+  await drag('left', 75, 0);
+  assert.ok(Math.abs((await pose()).azimuth - (azimuth - 90)) < 1, 'a quarter of the height is a quarter of a turn');
+
+  await act(() => viewer.home());
+  const debug = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => debug.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })) });
+  await touch('touchStart', [150, 150]);
+  await touch('touchStart', [150, 150], [250, 150]);
+  for (let k = 1; k <= 10; k++) await touch('touchMove', [150 - 5 * k, 150], [250 + 5 * k, 150]);
+  await touch('touchEnd');
+  await act(() => {});
+  assert.ok(Math.abs((await pose()).zoom - 2) < 0.05, `twice as far apart, twice as near: ${(await pose()).zoom}`);
+  await act(() => viewer.home());
+  await touch('touchStart', [200, 150]);
+  for (let k = 1; k <= 10; k++) await touch('touchMove', [200 + 7.5 * k, 150]);
+  await touch('touchEnd');
+  await act(() => {});
+  assert.ok((await pose()).azimuth < azimuth - 60, 'one finger turns it');
+  await act(() => viewer.home());
+  await touch('touchStart', [200, 250]);
+  for (let k = 1; k <= 10; k++) await touch('touchMove', [200, 250 - 15 * k]);
+  await touch('touchEnd');
+  await page.waitForFunction(() => scrollY > 50);
+  assert.ok(Math.abs((await pose()).azimuth - azimuth) < 1);
+});
+
 test('two share one context; one that is lost is said to be, and comes back', async () => {
   const { act, page, picture } = await open('<canvas style="width: 300px; height: 200px" aria-label="A"></canvas><canvas style="width: 200px; height: 300px" aria-label="B"></canvas>');
   await act(async () => {

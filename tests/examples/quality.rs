@@ -9,8 +9,8 @@ use pointweave::base::params::Target;
 use pointweave::base::progress::Silent;
 use pointweave::cloud::octree::Octree;
 use pointweave::reduce::Reduced;
-use pointweave::reduce::clusters::{SHARES, Shares};
 use pointweave::reduce::height_field::{Patches, cloud_distances};
+use pointweave::reduce::shares::{SHARES, Shares};
 use pointweave::samples::{Model, sample_with_noise};
 use pointweave::{Cloud, ReduceParams, Result, SurfaceParams, reconstruct, reduce};
 

@@ -9,7 +9,6 @@ import { UNKNOWN, colorAt, colorize } from '../../pkg/viewer/colormap.js';
 import { localSpacing } from '../../pkg/viewer/density.js';
 import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
 import { likelyUp } from '../../pkg/viewer/upright.js';
-import { doubtsAbout } from '../../www/src/results/doubts.js';
 import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
@@ -119,16 +118,6 @@ test('an axis has round values that tell how it runs, and not too many', () => {
   }
   assert.deepEqual(ticks([306, 764, 2000]), [500, 1000, 2000]);
   assert.deepEqual(ticks([0.0012, 0.0031, 0.0075]), [0.002, 0.003, 0.005, 0.007]);
-});
-
-test('a mesh that is better not relied on is said to be none', () => {
-  const outcome = (size, center, rms) => /** @type {any} */ ({ scan: { frame: { size, center } }, mesh: { report: { distance: { rms } } } });
-  assert.equal(doubtsAbout(outcome([1, 2, 3], [0, 0, 0], 5e-4)), '');
-  assert.match(doubtsAbout(outcome([1, 2, 3], [0, 0, 0], 0.03)), /not close/);
-  assert.match(doubtsAbout(outcome([0.0228, 0.0106, 39], [-95, 31, 60], 1e-4)), /degrees/);
-  assert.equal(doubtsAbout(outcome([0.02, 0.01, 39], [637_000, 849_000, 60], 1e-4)), '', 'a pole on a map in metres');
-  assert.equal(doubtsAbout(outcome([0.5, 0.5, 2], [0, 0, 0], 1e-4)), '', 'a statue in metres');
-  assert.equal(doubtsAbout({ ...outcome([1, 2, 3], [0, 0, 0], 1), mesh: null }), '');
 });
 
 test('what was surveyed stands on its z, and so does what is flat', () => {

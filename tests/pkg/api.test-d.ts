@@ -1,7 +1,7 @@
 // Never run: `tsc` checks that the package's types say what its documentation does, and that the modules agree.
 
 import {
-  DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write,
+  DEFAULTS, PointweaveError, createEngine, flip, inspect, read, reconstruct, reduce, sample, sideInWords, write,
   type CloudInfo, type Engine, type FileCloud, type Format, type OutputFormat, type PointCloud, type ReducedCloud, type Stage,
   type SurfaceMesh,
 } from 'pointweave';
@@ -34,6 +34,15 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const labelled = await reduce(exact, { attributes: { label: 'majority', colors: 'nearest' }, assignment: true, outliers: 'drop' });
   const members: Uint32Array | undefined = labelled.assignment;
   const mesh: SurfaceMesh<Float32Array> = await reconstruct(reduced, { reduce: false, smoothing: 'auto', resolution: 0.01 });
+  const viewpoints = { positions: Float64Array.of(0, 0, 2), of: new Uint32Array(positions.length / 3) };
+  const seen: SurfaceMesh<Float32Array> = await reconstruct({ positions, viewpoints, up: [0, 0, 1], seenFromAbove: false }, { orientation: 'viewpoints', flip: true });
+  const other: SurfaceMesh<Float32Array> = flip(seen, { triangle: 0 });
+  const places: Float64Array | undefined = other.cloud.viewpoints?.positions;
+  console.log(sideInWords(seen.report), seen.report.orientation.sources[0].share, seen.report.doubts[0]?.message, places);
+  // @ts-expect-error no such evidence
+  await reconstruct({ positions }, { orientation: 'down' });
+  // @ts-expect-error viewpoints are precise
+  await reconstruct({ positions, viewpoints: { positions } });
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
   const scan: FileCloud = await read(file, { format: 'las', signal, onProgress: ({ stage }) => console.log(stage) });

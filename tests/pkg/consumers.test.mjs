@@ -7,6 +7,7 @@ import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { read, sample, write } from 'pointweave';
+import { blocks, painted } from '../element/site.mjs';
 import { silhouette } from '../page/pictures.mjs';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
 import { CONSUMERS, install, pack } from './tarball.mjs';
@@ -55,7 +56,9 @@ async function check(t, address) {
   const [{ triangles }] = said.shown;
   assert.ok(triangles > 500);
   assert.deepEqual(said.shown, [{ kind: 'scan', triangles }, { kind: 'glb', triangles }]);
+  assert.equal(said.viewed, triangles);
   await checkPictures(page, 'point-weave');
+  await checkPictures(page, 'canvas#viewer');
   return page;
 }
 
@@ -107,6 +110,24 @@ test('Next.js, rendered on the server and exported', async (t) => {
   await build('next', 'bin:next/dist/bin/next', 'build');
   const page = await check(t, await serveFolders(t, ISOLATED, [folder('next/dist')]));
   await page.getByText(/^A duck of \d+ triangles\.$/).waitFor();
+});
+
+test('a mesh on a canvas in ten lines of a page, as the documentation has it', async (t) => {
+  const document = await readFile(new URL('node_modules/pointweave/docs/viewer.md', CONSUMERS), 'utf8');
+  const [html] = blocks(document, 'html');
+  const script = /<script type="module">\n([^]*?)<\/script>/.exec(html)[1];
+  assert.ok(script.includes('createViewer') && script.trim().split('\n').length <= 10, script);
+  const files = folder('viewer/dist');
+  await mkdir(files, { recursive: true });
+  await writeFile(new URL('index.html', files), html);
+  await writeFile(new URL('duck.ply', files), await write(await sample('duck', { count: 3000, seed: 1 })));
+  const page = await newPage(t);
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  await page.goto(await serveFolders(t, {}, [files, CONSUMERS]));
+  await page.waitForFunction(painted, undefined, { timeout: 60_000 });
+  await checkPictures(page, 'canvas');
+  assert.deepEqual(faults, []);
 });
 
 test("<model-viewer> shows the command line's GLB", async (t) => {

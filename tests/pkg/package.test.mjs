@@ -17,6 +17,9 @@ const path = (name) => fileURLToPath(new URL(name, PACKAGE));
 const text = (name) => readFile(new URL(name, PACKAGE), 'utf8');
 const manifest = JSON.parse(await text('package.json'));
 
+/** Where three.js is found. */
+const MODULES = fileURLToPath(new URL('../node_modules', import.meta.url));
+
 const tarball = await pack({ after });
 
 /** The files that a manifest's `exports` or `bin` names. */
@@ -75,14 +78,40 @@ test('the types are not wrong', async () => {
 test('what is not called is left out of a bundle, and the worker is not', async () => {
   const bundled = async (contents) => {
     const { metafile } = await build({
-      stdin: { contents, resolveDir: fileURLToPath(new URL('..', import.meta.url)) },
+      stdin: { contents, resolveDir: fileURLToPath(new URL('..', import.meta.url)) }, nodePaths: [MODULES],
       bundle: true, format: 'esm', write: false, metafile: true, logLevel: 'silent',
     });
     return Object.values(metafile.outputs)[0];
   };
   assert.equal((await bundled("import 'pointweave'")).bytes, 0);
   assert.equal((await bundled("import 'pointweave/core'")).bytes, 0);
+  assert.equal((await bundled("import 'pointweave/viewer'")).bytes, 0);
   assert.ok((await bundled("import 'pointweave/worker'")).bytes > 1000);
+});
+
+/**
+ * Most bytes of the element's parts with all that they import, three.js too, minified and gzipped: what is loaded at once, when one
+ * nears the viewport, and for a GLB.
+ */
+const ELEMENT = { element: 10_400, viewer: 155_500, glb: 164_000 };
+
+test('the element is not larger than its budget', async (t) => {
+  const { outputFiles, metafile: { outputs } } = await build({
+    entryPoints: [path('element.js')], outdir: 'out', nodePaths: [MODULES],
+    bundle: true, minify: true, splitting: true, format: 'esm', write: false, metafile: true, logLevel: 'silent',
+  });
+  const names = Object.keys(outputs);
+  const withImports = (name, found = new Set()) => {
+    found.add(name);
+    for (const { path, kind } of outputs[name].imports) if (kind === 'import-statement' && !found.has(path)) withImports(path, found);
+    return [...found];
+  };
+  for (const [part, most] of Object.entries(ELEMENT)) {
+    const files = withImports(names.find((name) => new RegExp(`/${part}(-\\w+)?\\.js$`).test(name)));
+    const bytes = files.reduce((sum, name) => sum + gzipSync(outputFiles[names.indexOf(name)].contents, { level: 9 }).length, 0);
+    t.diagnostic(`${part}: ${bytes} bytes`);
+    assert.ok(bytes <= most, `${part}: ${bytes} bytes`);
+  }
 });
 
 /** Most bytes of each part, gzipped. */

@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { PointweaveError, flip, inspect, read, reconstruct, reduce, sideInWords, write } from 'pointweave';
+import { PointweaveError, flip, inspect, read, reconstruct, reduce, sample, sideInWords, write } from 'pointweave';
 import { load } from 'pointweave/core';
 import { parse } from '../../pkg/cli/arguments.js';
 import { withSaid } from '../../pkg/cli/cloud-flags.js';
@@ -185,6 +185,10 @@ test('the report says what told the side, and doubts only what is doubtful', asy
   const two = { orientation: { sources: [{ source: 'guess', share: 0.2 }, { source: 'viewpoints', share: 0.796 }, { source: 'up', share: 0.004 }], guessed: 0.2 } };
   assert.equal(sideInWords(two), 'what tells the outer side: where it was scanned from (80 %), nothing, so this is a guess (20 %)');
   assert.deepEqual((await reduce(sphere(500))).report.doubts, []);
+  for (const model of ['duck', 'pig', 'part']) {
+    const clean = await reconstruct(await sample(model, { count: 3000 }), { reduce: { target: { ratio: 0.2 } } });
+    assert.deepEqual(clean.report.doubts, [], `a small scan of a ${model}`);
+  }
   const core = await load();
   const direct = core.reconstruct({ ...hills(), viewpoints: { positions: Float64Array.of(0, 0, -9) } });
   assert.ok(share(direct.report, 'viewpoints') > 0.99);
@@ -229,8 +233,8 @@ test('flip turns a mesh, or one piece of it with the points near it', async () =
 const said = (...args) => parse(['reconstruct', 'a.ply', '-o', 'b.glb', ...args]).cloud;
 
 test('the command line says where a scan was seen from', () => {
-  assert.deepEqual(said(), { viewpoints: [], up: undefined });
-  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined });
+  assert.deepEqual(said(), { viewpoints: [], up: undefined, unit: undefined });
+  assert.deepEqual(said('--viewpoint', '1,2.5,-3e2', '--viewpoint=-1, 0, 0'), { viewpoints: [[1, 2.5, -300], [-1, 0, 0]], up: undefined, unit: undefined });
   for (const [word, axis] of [['y', [0, 1, 0]], ['-z', [0, 0, -1]], ['1,2,2', [1, 2, 2]]]) assert.deepEqual(said(`--up=${word}`).up, axis);
   assert.deepEqual(parse(['reconstruct', 'a.ply', '-o', 'b.glb', '--orientation', 'inward', '--flip']).own, { orientation: 'inward', flip: true });
   for (const [args, line] of [

@@ -14,6 +14,7 @@ import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
 import { Session } from './session/session.js';
+import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
 import { meaningOf } from './controls/targets.js';
 
@@ -29,6 +30,7 @@ export class App {
   #session = new Session();
   #look = new Look(this.#root, () => this.#noteAddress());
   #numbers = new Numbers();
+  #side = new SideCard((triangle) => this.#session.flip(triangle), (chosen) => this.#look.choosePiece(chosen));
   #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
@@ -67,6 +69,7 @@ export class App {
     on('opened', (/** @type {Scan} */ scan) => this.#opened(scan));
     on('progress', (progress) => this.#progress.update(progress));
     on('made', (/** @type {Outcome} */ outcome) => this.#made(outcome));
+    on('turned', ({ outcome, piece }) => this.#turned(outcome, piece));
     on('cancelled', () => this.#cancelled());
     on('failed', ({ error, title }) => this.#failed(error, title));
   }
@@ -112,6 +115,7 @@ export class App {
     byId('caption-size', HTMLElement).textContent = scan.frame.size.map(format.length).join(' × ');
     this.#look.opened(scan);
     this.#numbers.opened(scan);
+    this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
@@ -121,10 +125,25 @@ export class App {
     const { reduced, mesh } = outcome;
     this.#look.made(outcome);
     this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
+    this.#side.show(mesh, { all: this.#flipped, piece: false });
     this.#saving.offer(outcome);
     this.#comparison.made(outcome);
     const kept = `Done: ${format.points(reduced.positions.length / 3)} kept`;
     announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
+  }
+
+  /** @param {Outcome} outcome @param {boolean} piece  not all of it */
+  #turned(outcome, piece) {
+    this.#look.made(outcome);
+    this.#side.show(outcome.mesh, { all: this.#flipped, piece });
+    this.#saving.offer(outcome);
+    this.#controls.show(this.#session.target, outcome.scan.count);
+    this.#noteAddress();
+    announce(piece ? 'The piece was flipped' : 'The mesh was flipped');
+  }
+
+  get #flipped() {
+    return this.#session.settings.get('flip') === true;
   }
 
   #cancelled() {
@@ -139,6 +158,7 @@ export class App {
 
   #escape() {
     if (this.#message.open) this.#message.hide();
+    else if (this.#side.choosing) this.#side.stop();
     else this.#session.cancel();
   }
 

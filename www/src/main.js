@@ -1,4 +1,5 @@
 import { App } from './app.js';
+import { showBuilding } from './building.js';
 import { byId } from './dom.js';
 import { workOffline } from './offline.js';
 import { canCompute } from './support.js';
@@ -9,3 +10,4 @@ else {
   byId('no-engine', HTMLElement).hidden = false;
 }
 workOffline();
+if (import.meta.env.BUILDING.length) showBuilding(import.meta.env.BUILDING);

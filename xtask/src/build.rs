@@ -4,12 +4,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::SystemTime;
 
-use crate::glue;
 use crate::options;
-use crate::setup;
+use crate::packages;
 use crate::shell::{Result, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
+use crate::tools;
+use crate::wasm_bindings;
 
 /// One of the wasm builds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,15 +26,24 @@ pub enum Build {
     Las,
     /// The reader of E57 alone.
     E57,
+    /// The decoders of textures' pictures alone.
+    Pictures,
+    /// The writers that are not in the engine, alone.
+    Exports,
+    /// The readers of what is packed as a whole.
+    Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 5] = [
+    pub const ALL: [Build; 8] = [
         Build::Single,
         Build::Threads,
         Build::Files,
         Build::Las,
         Build::E57,
+        Build::Pictures,
+        Build::Exports,
+        Build::Packed,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -44,6 +55,9 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -55,6 +69,9 @@ impl Build {
             Self::Files => "files",
             Self::Las => "las",
             Self::E57 => "e57",
+            Self::Pictures => "pictures",
+            Self::Exports => "exports",
+            Self::Packed => "packed",
         }
     }
 
@@ -62,9 +79,13 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single | Self::Files | Self::Las | Self::E57 => {
-                strings(&["-Ctarget-feature=+simd128"])
-            }
+            Self::Single
+            | Self::Files
+            | Self::Las
+            | Self::E57
+            | Self::Pictures
+            | Self::Exports
+            | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
                     "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
@@ -89,6 +110,18 @@ impl Build {
                 flags
             }
         }
+    }
+
+    /// The finished module.
+    fn module(self) -> PathBuf {
+        let folder = root().join("pkg/wasm").join(self.name());
+        folder.join("pointweave_bg.wasm")
+    }
+
+    /// Whether the finished module is there and no source is newer.
+    pub fn is_current(self) -> bool {
+        let made = newest(&[self.module()]);
+        made.is_some() && newest(&SOURCES.map(|path| root().join(path))) <= made
     }
 
     pub fn target_dir(self) -> PathBuf {
@@ -140,32 +173,85 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: what is written from the table of options, and pkg/wasm/single, threads, files, las and e57.
+/// `cargo xtask build`: what is written from the table of options, and every folder of pkg/wasm.
 pub fn build() -> Result<()> {
     options::write()?;
-    let toolchain = toolchain::wasm()?;
-    let tools = setup::wasm_tools()?;
-    setup::npm(&root().join("xtask"))?;
+    let builder = Builder::ready()?;
     for build in Build::ALL {
         say(&format!("building wasm, {}", build.name()));
+        builder.make(build)?;
+    }
+    Ok(())
+}
+
+/// All builds, unless none of them is older than the sources: the quick way for tests.
+pub fn ensure() -> Result<()> {
+    if Build::ALL.into_iter().all(Build::is_current) {
+        return options::write();
+    }
+    build()
+}
+
+/// What the builds are made with.
+pub struct Builder {
+    toolchain: Toolchain,
+    bindgen: PathBuf,
+}
+
+impl Builder {
+    /// Installs what is missing.
+    pub fn ready() -> Result<Self> {
+        let toolchain = toolchain::wasm()?;
+        let bindgen = tools::bindgen()?;
+        packages::npm(&root().join("xtask"))?;
+        Ok(Self { toolchain, bindgen })
+    }
+
+    /// Compiles a build, and makes its module anew where the compiler wrote another.
+    pub fn make(&self, build: Build) -> Result<()> {
         run(
-            build.cargo(&toolchain, "build").args(["--quiet", "--lib"]),
+            build
+                .cargo(&self.toolchain, "build")
+                .args(["--quiet", "--lib"]),
             "the wasm build failed; its errors are above",
         )?;
         let wasm = build
             .target_dir()
             .join(TARGET)
             .join("release/pointweave.wasm");
-        let out = root().join("pkg/wasm").join(build.name());
-        let made = out.join("pointweave_bg.wasm");
-        if !is_newer(&made, &[&wasm, &tools, &this_program()?]) {
-            let part = build.target_dir().join("pkg");
-            bind(&tools, &wasm, &part)?;
-            optimise(build, &part.join("pointweave_bg.wasm"))?;
-            replace(&part, &out)?;
+        let made = build.module();
+        if is_newer(&made, &[&wasm, &self.bindgen, &this_program()?]) {
+            return touch(&made);
         }
+        let part = build.target_dir().join("pkg");
+        bind(&self.bindgen, &wasm, &part)?;
+        optimise(build, &part.join("pointweave_bg.wasm"))?;
+        replace(&part, made.parent().expect("a folder of pkg/wasm"))
     }
-    Ok(())
+}
+
+/// Where the sources of every build are.
+const SOURCES: [&str; 3] = ["src", "Cargo.toml", "Cargo.lock"];
+
+/// The time of the newest file of these files and folders.
+pub fn newest(paths: &[PathBuf]) -> Option<SystemTime> {
+    let time = |path: &PathBuf| match fs::read_dir(path) {
+        Ok(entries) => {
+            let inside: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+            newest(&inside)
+        }
+        Err(_) => fs::metadata(path).and_then(|file| file.modified()).ok(),
+    };
+    paths.iter().filter_map(time).max()
+}
+
+/// Marks a file as made now.
+fn touch(file: &Path) -> Result<()> {
+    fs::File::options()
+        .append(true)
+        .open(file)
+        .and_then(|opened| opened.set_modified(SystemTime::now()))
+        .map_err(|error| format!("{} cannot be touched: {error}", file.display()))
 }
 
 /// Whether a file is there and no older than those that it was made from and by.
@@ -185,16 +271,12 @@ fn this_program() -> Result<PathBuf> {
 }
 
 /// The JavaScript side, as modules that a page, a worker and Node load alike.
-fn bind(tools: &Path, wasm: &Path, out: &Path) -> Result<()> {
-    let mut bindgen = command(tools);
-    bindgen
-        .args(["bindgen", "--target", "web", "--remove-producers-section"])
-        .args(["--no-typescript", "--omit-default-module-path"])
-        .arg("--out-dir")
-        .arg(out)
-        .arg(wasm);
-    run(&mut bindgen, "wasm-bindgen failed; its error is above")?;
-    glue::make_factory(&out.join("pointweave.js"))
+fn bind(bindgen: &Path, wasm: &Path, out: &Path) -> Result<()> {
+    run(
+        command(bindgen).arg(wasm).arg(out),
+        "wasm-bindgen failed; its error is above",
+    )?;
+    wasm_bindings::make_factory(&out.join("pointweave.js"))
 }
 
 fn optimise(build: Build, wasm: &Path) -> Result<()> {

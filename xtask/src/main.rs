@@ -1,16 +1,22 @@
-//! The project's commands: `cargo xtask build | serve | test | bench | setup`.
+//! The project's commands: `cargo xtask build | page | serve | test | bench | setup`.
 //!
 //! Every command first sets up what it needs (`setup.rs`) and says what it installs before it does.
 //! A failure is one sentence that says what to do.
 
+mod apt;
+mod bench;
+mod browsers;
 mod build;
-mod glue;
 mod options;
+mod packages;
 mod page;
+mod serve;
 mod setup;
 mod shell;
 mod test;
 mod toolchain;
+mod tools;
+mod wasm_bindings;
 
 use std::process::ExitCode;
 
@@ -23,9 +29,13 @@ Usage: cargo xtask <command> [options]
 
   build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
   options               what the table of options says, and nothing else
-  serve [--port N]      the builds and the page, served on localhost (default port 8080)
+  page                  the builds and the page, into www/dist/, for any static server
+  serve [--port N]      the same, served on localhost (default port 8080) as soon as there is something to see
   test [--only LIST]    every check, or those of a comma-separated list:
                         fmt,clippy,native,wasm,types,pkg,element,page
+  test PART [FILE [NAME]]
+                        one of them; of native, wasm, pkg, element and page one file alone
+                        (`test pkg cli` runs tests/pkg/cli.test.mjs), or its tests of that name
   bench [ARGS…]         the benchmarks, after a build; ARGS go to tests/bench/bench.mjs
   setup                 install whatever the other commands need, and nothing else
 
@@ -52,9 +62,12 @@ fn run(args: &[String]) -> Result<()> {
     match command {
         "build" => expect_no_options(arguments).and_then(|()| build::build()),
         "options" => expect_no_options(arguments).and_then(|()| options::write()),
-        "serve" => page::serve(port(arguments)?),
-        "test" => test::test(&test::selection(arguments)?),
-        "bench" => page::bench(arguments),
+        "page" => expect_no_options(arguments)
+            .and_then(|()| build::ensure())
+            .and_then(|()| page::ensure()),
+        "serve" => serve::serve(port(arguments)?),
+        "test" => test::test(&test::Selection::parse(arguments)?),
+        "bench" => bench::bench(arguments),
         "setup" => expect_no_options(arguments).and_then(|()| setup::everything()),
         "help" | "--help" | "-h" => {
             print!("{HELP}");

@@ -1,66 +1,45 @@
-//! `cargo xtask serve` and `cargo xtask bench`.
+//! The page for production, in www/dist.
 
-use crate::build;
-use crate::setup;
-use crate::shell::{Result, command, root, run, say};
 use std::path::PathBuf;
 
-/// Builds the package and the page, and serves the page until it is stopped.
-pub fn serve(port: u16) -> Result<()> {
-    build::build()?;
-    page()?;
-    let mut vite = command("npm");
-    vite.current_dir(root().join("www"))
-        .args([
-            "run",
-            "--silent",
-            "preview",
-            "--",
-            "--host",
-            "localhost",
-            "--strictPort",
-            "--port",
-        ])
-        .arg(port.to_string());
-    say(&format!(
-        "the page is at http://localhost:{port}/ until you press Ctrl-C"
-    ));
-    run(
-        &mut vite,
-        &format!("nothing is served any more; if port {port} is taken, choose one with `--port N`"),
-    )
-}
+use crate::build::{Build, newest};
+use crate::packages;
+use crate::shell::{Result, command, root, run, say};
 
-/// The page for production, into www/dist. It imports the package, so that has to be built before.
-pub fn page() -> Result<()> {
-    for folder in ["pkg", "www"] {
-        setup::npm(&root().join(folder))?;
-    }
-    say("building the page");
+/// What the page is made of, besides pkg/.
+const SOURCES: [&str; 6] = [
+    "www/index.html",
+    "www/package-lock.json",
+    "www/public",
+    "www/service-worker.js",
+    "www/src",
+    "www/vite.config.js",
+];
+
+/// Builds the page. It imports the package, so that has to be built before; what is `missing` of it is left out, and the page
+/// says so.
+pub fn build(missing: &[Build]) -> Result<()> {
+    packages::npm(&root().join("www"))?;
+    let names: Vec<&str> = missing.iter().map(|build| build.name()).collect();
     let mut vite = command("npm");
     vite.current_dir(root().join("www"))
-        .args(["run", "--silent", "build"]);
+        .args(["run", "--silent", "build"])
+        .env("POINTWEAVE_BUILDING", names.join(","));
     run(&mut vite, "the page did not build; its errors are above")
 }
 
-/// Runs the benchmarks on a fresh build.
-pub fn bench(arguments: &[String]) -> Result<()> {
-    build::build()?;
-    setup::npm(&root().join("tests"))?;
-    let mut bench = command("node");
-    bench.arg("tests/bench/bench.mjs").args(arguments);
-    let asked = |name| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
-    let mut peer = |name, variable: &str, install: fn() -> Result<PathBuf>| {
-        if asked(name) {
-            match install() {
-                Ok(python) => {
-                    bench.env(variable, python);
-                }
-                Err(sentence) => say(&format!("{sentence}; `{name}` leaves its peer out")),
-            }
-        }
-    };
-    peer("fcm", "SKFUZZY_PYTHON", setup::skfuzzy);
-    peer("surface", "OPEN3D_PYTHON", setup::open3d);
-    run(&mut bench, "a benchmark failed; its error is above")
+/// Builds the page unless nothing that it is made of is newer.
+pub fn ensure() -> Result<()> {
+    let built = root().join("www/dist");
+    let made = newest(&[built.join("service-worker.js")]);
+    let sources: Vec<PathBuf> = SOURCES
+        .iter()
+        .chain(&["pkg"])
+        .map(|path| root().join(path))
+        .collect();
+    if made.is_some() && newest(&sources) <= made {
+        return Ok(());
+    }
+    say("building the page");
+    build(&[])
 }

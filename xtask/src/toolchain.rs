@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::setup;
+use crate::apt::apt;
 use crate::shell::{Result, command, find, output, run, say};
 
 /// Debian's compiler for its browsers, kept current in every release, with sources and linker.
@@ -99,21 +99,25 @@ fn debian_first(path: OsString) -> OsString {
     env::join_paths(folders).expect("folders that PATH held already")
 }
 
-/// The first complete one of: what is there, rustup's after it may add the sources, Debian's.
-pub fn wasm() -> Result<Toolchain> {
-    let rustup = rustup_toolchains();
+/// The first complete one that is there.
+pub fn installed() -> Option<Toolchain> {
     let debian = Path::new("/usr/bin/rustc")
         .is_file()
         .then_some(Toolchain::Debian);
-    let installed = rustup
-        .iter()
-        .cloned()
+    rustup_toolchains()
+        .into_iter()
         .map(Toolchain::Rustup)
         .chain([Toolchain::Path])
-        .chain(debian);
-    if let Some(complete) = installed.into_iter().find(Toolchain::is_complete) {
+        .chain(debian)
+        .find(Toolchain::is_complete)
+}
+
+/// The first complete one of: what is there, rustup's after it may add the sources, Debian's.
+pub fn wasm() -> Result<Toolchain> {
+    if let Some(complete) = installed() {
         return Ok(complete);
     }
+    let rustup = rustup_toolchains();
     let rustup_may = env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0");
     if let (Some(name), true) = (rustup.first(), rustup_may) {
         say(&format!(
@@ -124,7 +128,7 @@ pub fn wasm() -> Result<Toolchain> {
             return Ok(Toolchain::Rustup(name.clone()));
         }
     }
-    setup::apt(
+    apt(
         &DEBIAN_PACKAGES,
         "a compiler with the sources of its standard library",
         "run `rustup component add rust-src`, or take a machine with apt",

@@ -65,7 +65,7 @@ fn camel_case(name: &str) -> String {
     let mut words = name.split('_');
     let first = words.next().unwrap_or_default().to_string();
     words.fold(first, |all, word| {
-        all + &word[..1].to_uppercase() + &word[1..]
+        all + &word[..1].to_ascii_uppercase() + &word[1..]
     })
 }
 

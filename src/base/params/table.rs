@@ -187,17 +187,17 @@ table! {
     choice Orientation {
         /// Everything that is known, as far as it holds when it is checked: the cloud's normals, its viewpoints, that it was seen
         /// from above, a depth camera at the origin; then closed shapes look outward and sheets up.
-        Auto "auto",
+        Auto "auto" "As the scan tells",
         /// The cloud's own normals, unchecked; the error `bad-option` where it has none.
         Normals "normals",
         /// The cloud's viewpoints: what was seen looks to where it was seen from. The error `bad-option` where it has none.
         Viewpoints "viewpoints",
         /// Along the cloud's up axis, z where it has none.
-        Up "up",
+        Up "up" "Up: land, floors",
         /// Away from the inside of what the surface encloses: objects.
-        Outward "outward",
+        Outward "outward" "Outward: objects",
         /// Into it: rooms.
-        Inward "inward",
+        Inward "inward" "Inward: rooms",
     }
 
     /// Options of a reconstruction.
@@ -215,9 +215,11 @@ table! {
         /// Infer which side is out; `false` takes the cloud's own normals as they are.
         switch orient: bool = true, flag("infer which side is out: the file's normals say it");
         /// `propagation: 'paper'` and `orient: false` have their own rules. The report's `orientation` says what did decide.
-        choice orientation: Orientation = Orientation::Auto, flag("what says which side is out; auto takes all that is known");
+        choice orientation: Orientation = Orientation::Auto, flag("what says which side is out; auto takes all that is known"),
+            field("Outer side", "What decides which side of the surface is out.");
         /// Turn the whole result to its other side in the end.
-        switch flip: bool = false, flag("turn the result to its other side");
+        switch flip: bool = false, flag("turn the result to its other side"),
+            field("Flip", "The other side of everything is out.");
         choice propagation: Propagation = Propagation::Global, flag("how orientation spreads");
         number resolution: Resolution = Resolution::Auto, range(auto or from 0.0001 to 0.25),
             flag("edge length of the mesh, a share of the diagonal");

@@ -132,7 +132,7 @@ impl<'a> Accessor<'a> {
 }
 
 /// What of a view lies within the data, from `offset` on.
-fn within<'a>(view: &BufferView, offset: usize, buffer: &'a [u8]) -> Option<&'a [u8]> {
+pub(super) fn within<'a>(view: &BufferView, offset: usize, buffer: &'a [u8]) -> Option<&'a [u8]> {
     let end = view.byte_offset.checked_add(view.byte_length)?;
     buffer.get(view.byte_offset..end)?.get(offset..)
 }

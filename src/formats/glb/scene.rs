@@ -15,6 +15,14 @@ pub(super) struct Document {
     #[serde(default)]
     buffers: Vec<Buffer>,
     #[serde(default)]
+    pub(super) materials: Vec<Material>,
+    #[serde(default)]
+    pub(super) textures: Vec<TextureEntry>,
+    #[serde(default)]
+    pub(super) images: Vec<Image>,
+    #[serde(default)]
+    pub(super) samplers: Vec<Sampler>,
+    #[serde(default)]
     meshes: Vec<Mesh>,
     #[serde(default)]
     nodes: Vec<Node>,
@@ -83,6 +91,101 @@ pub(super) struct Primitive {
     pub(super) attributes: BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) mode: Option<u32>,
+    pub(super) material: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    #[serde(default)]
+    pub(super) pbr_metallic_roughness: Pbr,
+    #[serde(default)]
+    pub(super) alpha_mode: String,
+    pub(super) alpha_cutoff: Option<f64>,
+    #[serde(default)]
+    pub(super) extensions: MaterialExtensions,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Pbr {
+    pub(super) base_color_factor: Option<[f64; 4]>,
+    pub(super) base_color_texture: Option<TextureUse>,
+}
+
+#[derive(Deserialize, Default)]
+pub(super) struct MaterialExtensions {
+    /// The materials of glTF 1.0, which photogrammetry still writes.
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub(super) specular: Option<Specular>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Specular {
+    pub(super) diffuse_factor: Option<[f64; 4]>,
+    pub(super) diffuse_texture: Option<TextureUse>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureUse {
+    pub(super) index: usize,
+    #[serde(default)]
+    pub(super) tex_coord: usize,
+    #[serde(default)]
+    pub(super) extensions: TextureExtensions,
+}
+
+#[derive(Deserialize, Default)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<TextureTransform>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    #[serde(default)]
+    pub(super) offset: [f64; 2],
+    #[serde(default)]
+    pub(super) rotation: f64,
+    pub(super) scale: Option<[f64; 2]>,
+    pub(super) tex_coord: Option<usize>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct TextureEntry {
+    pub(super) source: Option<usize>,
+    pub(super) sampler: Option<usize>,
+    #[serde(default)]
+    pub(super) extensions: TextureSources,
+}
+
+#[derive(Deserialize, Default)]
+pub(super) struct TextureSources {
+    #[serde(rename = "EXT_texture_webp")]
+    pub(super) webp: Option<TextureSource>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct TextureSource {
+    pub(super) source: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Image {
+    pub(super) uri: Option<String>,
+    pub(super) buffer_view: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Sampler {
+    pub(super) mag_filter: Option<u32>,
+    pub(super) wrap_s: Option<u32>,
+    pub(super) wrap_t: Option<u32>,
 }
 
 #[derive(Deserialize)]
@@ -237,6 +340,18 @@ impl Transform {
                 if column == 3 { sum + a[row][3] } else { sum }
             })
         }))
+    }
+
+    /// Whether it mirrors: triangles then run the other way round.
+    pub(super) fn mirrors(&self) -> bool {
+        let row = |i: usize| [self.0[i][0], self.0[i][1], self.0[i][2]];
+        let [a, b, c] = [row(0), row(1), row(2)];
+        let cross = [
+            b[1] * c[2] - b[2] * c[1],
+            b[2] * c[0] - b[0] * c[2],
+            b[0] * c[1] - b[1] * c[0],
+        ];
+        a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2] < 0.0
     }
 
     pub(super) fn point(&self, p: [f64; 3]) -> [f64; 3] {

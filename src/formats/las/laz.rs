@@ -199,6 +199,11 @@ impl Laz {
                     .decompress_z()
                     .decompress_classification()
                     .decompress_intensity()
+                    .decompress_flags()
+                    .decompress_scan_angle()
+                    .decompress_user_data()
+                    .decompress_point_source_id()
+                    .decompress_extra_bytes()
                     .decompress_rgb()
                     .decompress_nir(),
             );

@@ -1,7 +1,8 @@
 //! The header: encoding, elements, properties.
 
+use super::super::colors::ColorRange;
 use super::super::input::{Ending, Input};
-use super::super::table::{ColorRange, Columns, Precision};
+use super::super::table::{Columns, Precision};
 use super::super::text::quote;
 use crate::base::error::Result;
 
@@ -69,8 +70,15 @@ impl Scalar {
 
 /// A property: one value, or a count and as many values.
 pub(super) enum Property {
-    One { name: String, scalar: Scalar },
-    List { count: Scalar, item: Scalar },
+    One {
+        name: String,
+        scalar: Scalar,
+    },
+    List {
+        name: String,
+        count: Scalar,
+        item: Scalar,
+    },
 }
 
 pub(super) struct Element {
@@ -82,13 +90,20 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// Names of the properties that are one value, in order.
-    fn names(&self) -> Vec<String> {
+    /// Names of the properties that are one value, in order; the second of a name gets a number.
+    pub(super) fn names(&self) -> Vec<String> {
         let name = |property: &Property| match property {
             Property::One { name, .. } => Some(name.clone()),
             Property::List { .. } => None,
         };
-        self.properties.iter().filter_map(name).collect()
+        distinct(self.properties.iter().filter_map(name).collect())
+    }
+
+    /// Whether its rows are Gaussian splats.
+    pub(super) fn is_splats(&self) -> bool {
+        let names = self.names();
+        let has = |name: &&str| names.iter().any(|own| own == name);
+        SPLAT.iter().all(|name| has(&name))
     }
 
     /// Bytes of a row at least: in text a digit and its separator for each value, in binary with empty lists.
@@ -110,7 +125,18 @@ impl Element {
 
     /// Which values of a row are what; `None` without x, y and z.
     fn columns(&self, encoding: Encoding) -> Option<Columns> {
-        let mut columns = Columns::from_names(&self.names())?;
+        let names = self.names();
+        let mut columns = Columns::from_names(&names)?;
+        if self.is_splats() {
+            // What depends on the direction of view is left out.
+            let depends = |name: &str| name.starts_with("f_rest_") || name.starts_with("f_dc_");
+            columns.scalars.retain(|(_, name)| !depends(name));
+            if columns.color.is_none() {
+                let at = |wanted: &str| names.iter().position(|name| name == wanted).unwrap_or(0);
+                columns.color = Some(["f_dc_0", "f_dc_1", "f_dc_2"].map(at));
+                columns.colors = ColorRange::Harmonics;
+            }
+        }
         let scalars: Vec<Scalar> = self
             .properties
             .iter()
@@ -121,6 +147,7 @@ impl Element {
             .collect();
         if let Some(color) = columns.color
             && color.iter().all(|&i| scalars[i].size() == 1)
+            && columns.colors != ColorRange::Harmonics
         {
             columns.colors = ColorRange::Bytes;
         }
@@ -130,6 +157,23 @@ impl Element {
         }
         Some(columns)
     }
+}
+
+/// Properties that Gaussian splats have and nothing else.
+const SPLAT: [&str; 5] = ["f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0"];
+
+/// Names that all differ: CloudCompare writes scalar fields of one name.
+fn distinct(mut names: Vec<String>) -> Vec<String> {
+    let mut taken = std::collections::BTreeSet::new();
+    for name in &mut names {
+        let first = name.clone();
+        let mut count = 1;
+        while !taken.insert(name.clone()) {
+            count += 1;
+            *name = format!("{first}_{count}");
+        }
+    }
+    names
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -142,6 +186,8 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Names of the pictures that textures show.
+    pub(super) textures: Vec<String>,
     /// Its last line.
     line: u64,
 }
@@ -151,8 +197,11 @@ pub(super) struct Header {
 pub(super) struct HeaderLines {
     encoding: Option<Encoding>,
     elements: Vec<Element>,
+    textures: Vec<String>,
     /// How the first line ended.
     ending: Option<Ending>,
+    /// Lines end with a line feed and a carriage return, in this order: the second is at the start of the next line.
+    reversed: bool,
 }
 
 impl HeaderLines {
@@ -160,6 +209,7 @@ impl HeaderLines {
     pub(super) fn read(&mut self, input: &mut Input) -> Result<Option<Header>> {
         loop {
             let whole = input.rest();
+            let start = input.mark();
             let Some(line) = input.line()? else {
                 return match (input.last, self.ending) {
                     (false, _) => Ok(None),
@@ -177,9 +227,16 @@ impl HeaderLines {
                 self.ending = Some(input.ending);
                 continue;
             }
+            let after_feed = self.ending == Some(Ending::LineFeed);
+            self.reversed |=
+                line.is_empty() && after_feed && input.ending == Ending::CarriageReturn;
             let text = String::from_utf8_lossy(line);
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words[..] {
+                ["comment", "TextureFile", _, ..] => {
+                    let (_, name) = text.split_once("TextureFile").unwrap_or_default();
+                    self.textures.push(name.trim().into());
+                }
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, version] => {
                     self.encoding = Some(parse_encoding(name, version, input, line)?)
@@ -199,6 +256,13 @@ impl HeaderLines {
                     None => return Err(input.bad_line("an element before its properties", line)),
                 },
                 ["end_header"] => {
+                    if self.reversed && input.rest().is_empty() && !input.last {
+                        input.go_back(start);
+                        return Ok(None);
+                    }
+                    if self.reversed && input.rest().first() == Some(&b'\r') {
+                        input.skip(1);
+                    }
                     let Some(encoding) = self.encoding else {
                         return Err(input.bad_line("a format line before end_header", line));
                     };
@@ -206,10 +270,10 @@ impl HeaderLines {
                     if self.ending == Some(Ending::CarriageReturn) && input.ending == Ending::Both {
                         input.put_back_line_feed(whole);
                     }
-                    let elements = std::mem::take(&mut self.elements);
                     return Ok(Some(Header {
                         encoding,
-                        elements,
+                        elements: std::mem::take(&mut self.elements),
+                        textures: std::mem::take(&mut self.textures),
                         line: input.place.line,
                     }));
                 }
@@ -247,15 +311,10 @@ impl Header {
             return Err(missing(self.line, described("element", names)));
         };
         let element = &self.elements[index];
-        let mut names = element.names();
+        let names = element.names();
         let Some(columns) = element.columns(self.encoding) else {
             return Err(missing(element.line, described("property", names)));
         };
-        names.sort_unstable();
-        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let expected = "properties with different names";
-            return Err(input.bad_at_line(element.line, expected, quote(pair[0].as_bytes())));
-        }
         Ok((index, columns))
     }
 }
@@ -279,7 +338,8 @@ fn parse_property(words: &[&str], input: &Input, line: &[u8]) -> Result<Property
         })
     };
     match *words {
-        [_, "list", count, item, _] => Ok(Property::List {
+        [_, "list", count, item, name] => Ok(Property::List {
+            name: name.into(),
             count: scalar(count)?,
             item: scalar(item)?,
         }),

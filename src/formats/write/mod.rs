@@ -1,15 +1,26 @@
-//! Results to bytes, one file a format; what they share is here, in `names` and in `local`.
+//! Results to bytes, one file a format; what they share is here, in `names`, `local` and `stand`.
 
 mod glb;
+#[cfg(feature = "exports")]
+mod las;
 mod local;
 mod names;
 mod obj;
+#[cfg(feature = "exports")]
+mod pcd;
 mod ply;
+mod stand;
 mod stl;
+#[cfg(feature = "exports")]
+mod threemf;
 mod xyz;
+#[cfg(feature = "exports")]
+mod zip;
 
 use super::{Positions, RawCloud};
 use crate::base::error::{Error, Result};
+use crate::cloud::Unit;
+use stand::Wanted;
 
 /// A format that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,16 +35,36 @@ pub enum Output {
     Obj,
     /// Binary STL: triangles alone, single precision.
     Stl,
+    /// PCD of the Point Cloud Library, binary: points with everything, in world coordinates.
+    #[cfg(feature = "exports")]
+    Pcd,
+    /// LAS 1.4: points with everything, in world coordinates, with their reference system.
+    #[cfg(feature = "exports")]
+    Las,
+    /// LAS 1.4, compressed by LASzip.
+    #[cfg(feature = "exports")]
+    Laz,
+    /// 3MF: triangles and colours.
+    #[cfg(feature = "exports")]
+    ThreeMf,
 }
 
 impl Output {
-    /// All of them.
-    pub const ALL: [Output; 5] = [
+    /// All of this build.
+    pub const ALL: &[Output] = &[
         Output::Ply,
         Output::Xyz,
         Output::Glb,
         Output::Obj,
         Output::Stl,
+        #[cfg(feature = "exports")]
+        Output::Pcd,
+        #[cfg(feature = "exports")]
+        Output::Las,
+        #[cfg(feature = "exports")]
+        Output::Laz,
+        #[cfg(feature = "exports")]
+        Output::ThreeMf,
     ];
 
     /// Lower-case name, as `format` in the JS interface and as the extension of files.
@@ -44,22 +75,57 @@ impl Output {
             Output::Glb => "glb",
             Output::Obj => "obj",
             Output::Stl => "stl",
+            #[cfg(feature = "exports")]
+            Output::Pcd => "pcd",
+            #[cfg(feature = "exports")]
+            Output::Las => "las",
+            #[cfg(feature = "exports")]
+            Output::Laz => "laz",
+            #[cfg(feature = "exports")]
+            Output::ThreeMf => "3mf",
         }
     }
 
     /// The format of that [`Output::name`].
     pub fn from_name(name: &str) -> Option<Output> {
-        Output::ALL.into_iter().find(|format| format.name() == name)
+        let all = Output::ALL.iter().copied();
+        all.into_iter().find(|format| format.name() == name)
+    }
+
+    /// Which way is up in such files; `None` where any may be.
+    pub fn up(self) -> Option<[f64; 3]> {
+        match self {
+            Output::Glb => Some([0.0, 1.0, 0.0]),
+            Output::Stl => Some([0.0, 0.0, 1.0]),
+            #[cfg(feature = "exports")]
+            Output::Las | Output::Laz | Output::ThreeMf => Some([0.0, 0.0, 1.0]),
+            _ => None,
+        }
+    }
+
+    /// The unit of such files; `None` where any may be.
+    pub fn unit(self) -> Option<Unit> {
+        match self {
+            Output::Glb => Some(Unit::Metre),
+            Output::Stl => Some(Unit::Millimetre),
+            #[cfg(feature = "exports")]
+            Output::ThreeMf => Some(Unit::Millimetre),
+            _ => None,
+        }
     }
 }
 
 /// How a file is written.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WriteOptions {
     /// PLY as text instead of binary. Default: binary.
     pub ascii: bool,
     /// GLB with positions and normals as integers, in half the room, by `KHR_mesh_quantization`. Default: not.
     pub quantize: bool,
+    /// Which way is up in the file. Default: what the format asks for ([`Output::up`]), or as it is.
+    pub up: Option<[f64; 3]>,
+    /// What a coordinate is in the file. Default: what the format asks for ([`Output::unit`]), or as it is.
+    pub unit: Option<Unit>,
 }
 
 /// Writes points, and with `triangles` (three indices each) a mesh. [`Output`] says what each format holds; what it does
@@ -68,7 +134,8 @@ pub struct WriteOptions {
 /// # Errors
 /// [`Error::BadLength`] where an array does not have one entry a point, or the triangles' length is no multiple of 3;
 /// [`Error::BadIndex`] for a corner that is no point; [`Error::NeedsTriangles`] for an STL file without triangles;
-/// [`Error::NonFinite`] where the format cannot hold such a number (GLB and STL).
+/// [`Error::NonFinite`] where the format cannot hold such a number (GLB and STL); [`Error::BadOption`] where the options ask for
+/// another up or unit and the cloud does not say its own.
 pub fn write(
     cloud: &RawCloud,
     triangles: Option<&[u32]>,
@@ -79,12 +146,34 @@ pub fn write(
     if let Some(indices) = triangles {
         check_triangles(indices, cloud.points())?;
     }
+    check_up(options.up)?;
+    let up = Wanted::of(options.up, format.up());
+    let standing = stand::stand(cloud, up, Wanted::of(options.unit, format.unit()))?;
+    let cloud = standing.as_ref().unwrap_or(cloud);
     match format {
         Output::Ply => Ok(ply::write(cloud, triangles, options.ascii)),
         Output::Xyz => Ok(xyz::write(cloud)),
         Output::Glb => glb::write(cloud, triangles, options.quantize),
         Output::Obj => Ok(obj::write(cloud, triangles)),
         Output::Stl => stl::write(cloud, triangles.ok_or(Error::NeedsTriangles)?),
+        #[cfg(feature = "exports")]
+        Output::Pcd => Ok(pcd::write(cloud)),
+        #[cfg(feature = "exports")]
+        Output::Las | Output::Laz => las::write(cloud, format == Output::Laz),
+        #[cfg(feature = "exports")]
+        Output::ThreeMf => threemf::write(cloud, triangles.ok_or(Error::NeedsTriangles)?),
+    }
+}
+
+/// A direction has one.
+fn check_up(up: Option<[f64; 3]>) -> Result<()> {
+    match up {
+        Some([x, y, z]) if !(x * x + y * y + z * z).is_normal() => Err(Error::BadOption {
+            option: "up".into(),
+            expected: "three finite numbers that are not all 0".into(),
+            found: format!("{x}, {y}, {z}"),
+        }),
+        _ => Ok(()),
     }
 }
 

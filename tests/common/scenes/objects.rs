@@ -219,7 +219,7 @@ fn vase_radius(t: f64, shape: f64) -> f64 {
 }
 
 fn is_at_vase(p: DVec3, shape: f64) -> bool {
-    p.z > 0.04 && p.z < 1.02 && (p.truncate().length() - vase_radius(p.z, shape)).abs() < 0.04
+    p.z > 0.04 && p.z < 0.96 && (p.truncate().length() - vase_radius(p.z, shape)).abs() < 0.04
 }
 
 fn vase_scene(r: &mut Rng, foot: Foot) -> Scene {
@@ -238,8 +238,8 @@ fn vase_scene(r: &mut Rng, foot: Foot) -> Scene {
 /// A vase without a bottom on a disc; strays in strands to the vase and to the disc.
 fn on_disc(r: &mut Rng, to_vase: usize, to_disc: usize) -> Scene {
     let shape = r.uniform();
-    let vase = turned(r, 2200, |t| vase_radius(t, shape));
-    let table = disc(r, 2200, 0.8, 0.0);
+    let vase = turned(r, 4000, |t| vase_radius(t, shape));
+    let table = disc(r, 4000, 0.8, 0.0);
     let mut points = noisy(r, 0.002, [vase, table].concat());
     let a = TAU * r.uniform();
     let around = DVec3::new(a.cos(), a.sin(), 0.0);
@@ -284,7 +284,7 @@ fn boxes_on_table(r: &mut Rng) -> Scene {
         points.extend(boxed(r, 550, lo, hi, &[4]));
     }
     let truth = |_: DVec3, n: DVec3| (n.z.abs() > 0.8).then_some(n.z > 0.0);
-    Scene::new(Sure::Guess, noisy(r, 0.002, points), truth)
+    Scene::new(Sure::Told, noisy(r, 0.002, points), truth)
 }
 
 fn balls_on_table(r: &mut Rng) -> Scene {

@@ -34,7 +34,7 @@ pub const RECIPES: &[Row] = &[
             .for_each(|p| *p += DVec3::new(-25.0, -25.0, lift));
         scene
     }),
-    ("town", "town", |r| town(r, Sure::Guess)),
+    ("town", "town", |r| town(r, Sure::Told)),
     ("town", "town from above", |r| {
         town(r, Sure::Told).seen_from_above()
     }),
@@ -204,7 +204,11 @@ fn furnished(r: &mut Rng, mut scene: Scene) -> Scene {
             && p.y < hi.y
     };
     scene.points.retain(|p| !covered(p));
-    let table = boxed(r, 450, lo, hi, &[4]);
+    // The faces that the eye, above it in the room, sees.
+    let eye = scene.told.viewpoints[0];
+    let hidden = [eye.x > lo.x, eye.x < hi.x, eye.y > lo.y, eye.y < hi.y];
+    let hidden: Vec<usize> = (0..4).filter(|&f| hidden[f]).chain([4]).collect();
+    let table = boxed(r, 450, lo, hi, &hidden);
     scene.points.extend(noisy(r, 0.008, table));
     scene.truth = Box::new(move |p, n| {
         let (a, b) = (lo - 0.08, hi + 0.08);
@@ -309,6 +313,8 @@ fn frame(r: &mut Rng, floor: f64, forward: f64) -> Scene {
     let balls: Vec<(DVec3, f64)> = (0..count).map(|_| ball(r)).collect();
     let tilt = range(r, -0.4, 0.4);
     let mut points = Vec::new();
+    let mut normals = Vec::new();
+    let turn = DVec3::new(1.0, forward, forward);
     for v in 0..54 {
         for u in 0..68 {
             let d = DVec3::new(
@@ -317,21 +323,30 @@ fn frame(r: &mut Rng, floor: f64, forward: f64) -> Scene {
                 1.0,
             );
             let mut t = 2.6 / (1.0 - tilt * d.x);
-            if d.y > 0.0 {
-                t = t.min(floor / d.y);
+            let mut normal = DVec3::new(tilt, 0.0, -1.0);
+            if d.y > 0.0 && floor / d.y < t {
+                (t, normal) = (floor / d.y, -DVec3::Y);
             }
             for &(c, radius) in &balls {
                 let (b, l) = (d.dot(c) / d.length_squared(), d.length_squared());
                 let h = b * b - (c.length_squared() - radius * radius) / l;
-                if h > 0.0 {
-                    t = t.min(b - h.sqrt());
+                if h > 0.0 && b - h.sqrt() < t {
+                    t = b - h.sqrt();
+                    normal = d * t - c;
                 }
             }
-            let p = d * t * (1.0 + 0.0008 * r.normal());
-            points.push(p * DVec3::new(1.0, forward, forward));
+            points.push(d * t * (1.0 + 0.0008 * r.normal()) * turn);
+            normals.push(normal * turn);
         }
     }
-    Scene::new(Sure::Told, points, |p, n| Some(n.dot(-p) > 0.0))
+    let scanned = points.clone();
+    let truth = move |p: DVec3, n: DVec3| {
+        let distance = |q: &DVec3| q.distance_squared(p);
+        let pairs = scanned.iter().map(distance).zip(&normals);
+        let nearest = pairs.reduce(|best, x| if x.0 < best.0 { x } else { best });
+        nearest.map(|(_, normal)| n.dot(*normal) > 0.0)
+    };
+    Scene::new(Sure::Told, points, truth)
 }
 
 /// For [`super::objects`]: points with their normals, from several eyes, each with the eye that saw it.

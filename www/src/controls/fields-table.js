@@ -5,6 +5,8 @@ export const FIELDS = {
   fuzzifier: { in: 'reduce', kind: 'number', label: 'Fuzzifier m', hint: 'How softly points belong to more than one cluster.', low: 1.05, high: 4, least: 1, most: 100, open: '(', unit: '', follows: { adaptive: 1.5, paper: 2 } },
   accuracy: { in: 'reconstruct', kind: 'number', label: 'Accuracy of the fit', hint: 'Patches are divided until they are this close to the points, in per cent of the diagonal.', low: 5e-5, high: 5e-3, least: 0, most: 1, open: '()', times: 100, unit: '%' },
   smoothing: { in: 'reconstruct', kind: 'number', label: 'Smoothing', hint: 'Left empty, it follows the noise that was measured.', low: 1e-4, high: 10, least: 0, most: 1000000, open: '', unit: '', auto: true },
+  orientation: { in: 'reconstruct', kind: 'choice', label: 'Outer side', hint: 'What decides which side of the surface is out.', choices: { auto: 'As the scan tells', up: 'Up: land, floors', outward: 'Outward: objects', inward: 'Inward: rooms' } },
+  flip: { in: 'reconstruct', kind: 'flag', label: 'Flip', hint: 'The other side of everything is out.' },
   sharp: { in: 'reconstruct', kind: 'flag', label: 'Keep creases sharp', hint: 'Edges and corners stay; without it they are rounded.' },
   boundary: { in: 'reconstruct', kind: 'choice', label: 'Holes', hint: 'What happens where nothing was scanned.', choices: { auto: 'Close small ones', closed: 'Close all', open: 'Leave open' } },
 };

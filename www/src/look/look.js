@@ -2,6 +2,7 @@ import { PAINTS, PAINT_WORDS, canPaint, createViewer, paintOf } from 'pointweave
 import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { Legend } from './legend.js';
+import { PieceChoice } from './piece.js';
 import { Split } from './split.js';
 import { followTheme } from './theme.js';
 
@@ -52,6 +53,7 @@ export class Look {
   #paint = 'natural';
   /** The layers that have these colours; the others get them when they are shown. @type {Map<View, Paint>} */
   #painted = new Map();
+  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null);
   #split = new Split(() => this.#show(this.#view));
 
   /**
@@ -110,6 +112,12 @@ export class Look {
     this.#split.offerMesh(Boolean(mesh));
     this.#showBoxes();
     this.#settle();
+  }
+
+  /** Has the person choose a triangle of the mesh in the picture, or no more. @param {((triangle: number) => void) | null} chosen */
+  choosePiece(chosen) {
+    if (chosen && this.#view !== 'mesh' && this.#view !== 'compare') this.#show('mesh');
+    this.#piece.ask(chosen);
   }
 
   /** @returns {Key[]} */

@@ -1,6 +1,5 @@
 import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
-import { doubtsAbout } from './doubts.js';
 import * as format from './format.js';
 import { countHoles } from '../look/holes.js';
 import { stageWords } from './stages.js';
@@ -58,7 +57,7 @@ export class Numbers {
     this.#set('components', mesh?.report.components, format.count);
     this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
     this.#set('totalMs', report.totalMs, format.duration);
-    this.#doubt.textContent = doubtsAbout({ scan, mesh });
+    this.#doubt.textContent = report.doubts.map(({ message }) => message).join(' ');
     this.#doubt.hidden = !this.#doubt.textContent;
     const { mean, rms, max } = report.distance;
     for (const [name, share] of Object.entries({ errorMean: mean, errorRms: rms, errorMax: max })) {

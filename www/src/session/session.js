@@ -1,4 +1,4 @@
-import { createEngine, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { createEngine, flip, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { splitOrigin } from './origin.js';
@@ -36,7 +36,7 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page.
  *
  * Events: `state` (a State), `opened` (a Scan), `progress` ({stage, overall}), `made` (an Outcome),
- * `cancelled`, `failed` ({error, title}); the value is the event's `detail`.
+ * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title}); the value is the event's `detail`.
  */
 export class Session extends EventTarget {
   settings = new Settings();
@@ -135,6 +135,19 @@ export class Session extends EventTarget {
     } finally {
       await engine?.dispose();
     }
+  }
+
+  /** Turns the mesh to its other side, or the piece of a triangle alone: that only until the next job. @param {number} [triangle] */
+  flip(triangle) {
+    const { outcome, settings } = this;
+    if (!outcome?.mesh) return;
+    const mesh = flip(outcome.mesh, { triangle });
+    this.outcome = { ...outcome, mesh, reduced: mesh.cloud };
+    if (triangle === undefined) {
+      settings.set('flip', !settings.get('flip'));
+      this.#asked = JSON.stringify(settings.options(this.target));
+    }
+    this.#emit('turned', { outcome: this.outcome, piece: triangle !== undefined });
   }
 
   /** Ends {@link compare}. */

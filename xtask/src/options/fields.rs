@@ -67,12 +67,16 @@ fn choices(table: &Table, row: &Row) -> String {
     let Body::Choice(choices) = &table.item(row.ty).body else {
         panic!("{} is no choice", row.ty);
     };
-    let words = choices.iter().map(|choice| {
-        let label = choice
-            .label
-            .unwrap_or_else(|| panic!("{} has no label for the page", choice.variant));
-        format!("{}: {}", choice.word, quoted(label))
-    });
+    let default = &choices[0];
+    assert!(
+        default.label.is_some(),
+        "{} has no label for the page",
+        default.variant
+    );
+    // What has no label asks for something that not every scan has.
+    let words = choices
+        .iter()
+        .filter_map(|choice| Some(format!("{}: {}", choice.word, quoted(choice.label?))));
     format!("choices: {{ {} }}", words.collect::<Vec<_>>().join(", "))
 }
 

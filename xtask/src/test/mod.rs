@@ -1,91 +1,67 @@
 //! `cargo xtask test`: every check of the project, each named, timed and summed up at the end.
 
+mod selection;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use crate::browsers;
 use crate::build::{self, Build, TARGET};
+use crate::packages;
 use crate::page;
-use crate::setup;
 use crate::shell::{Result, cargo, command, root, run, say};
 use crate::toolchain::{self, Toolchain};
-
-/// A check that `--only` can name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Check {
-    Fmt,
-    Clippy,
-    Native,
-    Wasm,
-    Types,
-    Pkg,
-    Element,
-    Page,
-}
-
-impl Check {
-    /// The quick ones first.
-    const ALL: [(Check, &str); 8] = [
-        (Check::Fmt, "fmt"),
-        (Check::Clippy, "clippy"),
-        (Check::Native, "native"),
-        (Check::Wasm, "wasm"),
-        (Check::Types, "types"),
-        (Check::Pkg, "pkg"),
-        (Check::Element, "element"),
-        (Check::Page, "page"),
-    ];
-
-    /// These read what `cargo xtask build` writes.
-    fn needs_package(self) -> bool {
-        matches!(
-            self,
-            Check::Types | Check::Pkg | Check::Element | Check::Page
-        )
-    }
-}
-
-/// The checks that the command line asks for: all, or those after `--only`.
-pub fn selection(options: &[String]) -> Result<Vec<Check>> {
-    let list = match options {
-        [] => return Ok(Check::ALL.map(|(check, _)| check).to_vec()),
-        [flag, list] if flag == "--only" => list,
-        _ => return Err("`test` takes `--only fmt,clippy,…` and nothing else".into()),
-    };
-    let names = Check::ALL.map(|(_, name)| name).join(",");
-    let find = |name| Check::ALL.iter().find(|(_, known)| *known == name);
-    list.split(',')
-        .map(|name| find(name).map(|(check, _)| *check))
-        .collect::<Option<Vec<Check>>>()
-        .ok_or_else(|| format!("`--only {list}` names something else than {names}"))
-}
+use crate::tools;
+use selection::Check;
+pub use selection::Selection;
 
 /// Runs every check, also after one has failed, so that one run shows all that is wrong.
-pub fn test(checks: &[Check]) -> Result<()> {
+pub fn test(selection: &Selection) -> Result<()> {
     let mut log = Log::default();
+    match selection {
+        Selection::Checks(checks) => all(checks, &mut log),
+        Selection::File { check, file, name } => {
+            log.step(file, || one(*check, file, name.as_deref()));
+        }
+    }
+    log.finish()
+}
+
+fn all(checks: &[Check], log: &mut Log) {
     let mut built = false;
     for &check in checks {
         if check.needs_package() && !built {
-            log.step("build", build::build);
+            log.step("build", build::ensure);
             built = true;
         }
         match check {
             Check::Fmt => log.step("fmt", fmt),
             Check::Clippy => log.step("clippy", clippy),
             Check::Native => log.step("native", native),
-            Check::Wasm => wasm(&mut log),
+            Check::Wasm => wasm(log),
             Check::Types => log.step("types", types),
             Check::Pkg => log.step("pkg", || {
-                setup::npm(&root().join("tests/consumers"))?;
+                packages::npm(&root().join("tests/consumers"))?;
                 node_tests("tests/pkg")
             }),
             Check::Element => log.step("element", || node_tests("tests/element")),
             Check::Page => log.step("page", || {
-                page::page().and_then(|()| node_tests("tests/page"))
+                page::ensure().and_then(|()| node_tests("tests/page"))
             }),
         }
     }
-    log.finish()
+}
+
+/// One file of a check, with nothing made that it does not need.
+fn one(check: Check, file: &str, name: Option<&str>) -> Result<()> {
+    match check {
+        Check::Native => native_file(file, name),
+        Check::Wasm => wasm_file(file, name),
+        Check::Pkg => node_file("tests/pkg", file, name),
+        Check::Element => node_file("tests/element", file, name),
+        _ => node_file("tests/page", file, name),
+    }
 }
 
 /// What ran, how long it took and how it ended.
@@ -130,7 +106,7 @@ impl Log {
 }
 
 fn fmt() -> Result<()> {
-    setup::rust_component("rustfmt")?;
+    tools::rust_component("rustfmt")?;
     run(
         cargo().args(["fmt", "--all", "--check"]),
         "run `cargo fmt --all`",
@@ -138,7 +114,7 @@ fn fmt() -> Result<()> {
 }
 
 fn clippy() -> Result<()> {
-    setup::rust_component("clippy")?;
+    tools::rust_component("clippy")?;
     for features in [&[][..], &["--features", "pointweave/threads"]] {
         let mut clippy = cargo();
         clippy
@@ -166,35 +142,52 @@ fn native() -> Result<()> {
     run(&mut tests, "native tests failed, see above")
 }
 
+/// One file of tests/, or the unit tests of a module of src/ or of xtask.
+fn native_file(file: &str, name: Option<&str>) -> Result<()> {
+    let mut tests = cargo();
+    tests.args(["test", "--features", "pointweave/threads"]);
+    if root().join(format!("tests/{file}.rs")).is_file() {
+        tests.args(["--package", "pointweave", "--test", file, "--"]);
+        tests.args(name);
+    } else {
+        tests.args(["--workspace", "--lib", "--bins", "--"]);
+        tests.arg(match name {
+            Some(name) => format!("{file}::tests::{name}"),
+            None => format!("{file}::"),
+        });
+    }
+    run(&mut tests, "tests failed, see above")
+}
+
 /// Every build in every browser, each compiled once.
 fn wasm(log: &mut Log) {
     let mut ready = None;
     log.step("wasm: set up", || {
-        setup::chromium()?;
-        setup::firefox()?;
+        browsers::chromium()?;
+        browsers::firefox()?;
         ready = Some((
             toolchain::wasm()?,
-            setup::wasm_tools()?,
+            tools::test_runner()?,
             [
-                ("chromium", "CHROMEDRIVER", setup::chromedriver()?),
-                ("firefox", "GECKODRIVER", setup::geckodriver()?),
+                ("chromium", "CHROMEDRIVER", browsers::chromedriver()?),
+                ("firefox", "GECKODRIVER", browsers::geckodriver()?),
             ],
         ));
         Ok(())
     });
-    let Some((toolchain, tools, browsers)) = ready else {
+    let Some((toolchain, runner, browsers)) = ready else {
         return;
     };
     for build in Build::ENGINES {
         log.step(&format!("wasm: compile {}", build.name()), || {
             run(
-                wasm_tests(build, &toolchain, &tools).arg("--no-run"),
+                wasm_tests(build, &toolchain, &runner).arg("--no-run"),
                 "the tests did not compile, see above",
             )
         });
         for (browser, variable, driver) in &browsers {
             log.step(&format!("wasm: {} in {browser}", build.name()), || {
-                let mut tests = wasm_tests(build, &toolchain, &tools);
+                let mut tests = wasm_tests(build, &toolchain, &runner);
                 // The runner takes the first driver that any of these names.
                 for (_, other, _) in &browsers {
                     tests.env_remove(other);
@@ -209,7 +202,20 @@ fn wasm(log: &mut Log) {
     }
 }
 
-fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
+/// The module of one file of tests/, in the single-threaded build and Chromium alone.
+fn wasm_file(file: &str, name: Option<&str>) -> Result<()> {
+    browsers::chromium()?;
+    let (toolchain, runner) = (toolchain::wasm()?, tools::test_runner()?);
+    let mut tests = wasm_tests(Build::Single, &toolchain, &runner);
+    tests
+        .env_remove("GECKODRIVER")
+        .env("CHROMEDRIVER", browsers::chromedriver()?)
+        .arg("--")
+        .arg(format!("{file}::{}", name.unwrap_or_default()));
+    run(&mut tests, "wasm tests failed, see above")
+}
+
+fn wasm_tests(build: Build, toolchain: &Toolchain, runner: &Path) -> Command {
     let mut tests = build.cargo(toolchain, "test");
     // By name: documentation tests would take rustdoc from PATH, and it is another compiler's.
     tests.args(["--test", "wasm"]);
@@ -219,8 +225,8 @@ fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
     tests
         .args(["--no-fail-fast", "--config"])
         .arg(format!(
-            "target.{TARGET}.runner=[{:?}, \"test-runner\"]",
-            tools.display().to_string()
+            "target.{TARGET}.runner=[{:?}]",
+            runner.display().to_string()
         ))
         .env("WASM_BINDGEN_TEST_TIMEOUT", "1200")
         .env("WASM_BINDGEN_TEST_DRIVER_TIMEOUT", "60")
@@ -232,7 +238,7 @@ fn wasm_tests(build: Build, toolchain: &Toolchain, tools: &Path) -> Command {
 /// Types of the package, the page and the tests, wherever there is a tsconfig.json.
 fn types() -> Result<()> {
     for folder in ["pkg", "www", "tests"] {
-        setup::npm(&root().join(folder))?;
+        packages::npm(&root().join(folder))?;
     }
     for folder in ["pkg", "www", "tests"] {
         let project = root().join(folder).join("tsconfig.json");
@@ -255,19 +261,43 @@ fn types() -> Result<()> {
 
 /// The tests in a folder, by Node's own runner.
 fn node_tests(folder: &str) -> Result<()> {
-    for installed in ["pkg", "tests"] {
-        setup::npm(&root().join(installed))?;
-    }
     let files = files(folder, ".test.mjs")?;
     if files.is_empty() {
         return Err(format!("{folder} holds no *.test.mjs"));
     }
+    node(&files, None, true)
+}
+
+/// One file of such a folder: no package is built that is not older than the sources, no page where none is opened.
+fn node_file(folder: &str, file: &str, name: Option<&str>) -> Result<()> {
+    let path = root().join(folder).join(format!("{file}.test.mjs"));
+    let text = std::fs::read_to_string(&path)
+        .map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
+    build::ensure()?;
+    if text.contains("consumers") {
+        packages::npm(&root().join("tests/consumers"))?;
+    }
+    if folder == "tests/page" && text.contains("./browser.mjs") {
+        page::ensure()?;
+    }
+    let opens = ["browser.mjs", "site.mjs"]
+        .iter()
+        .any(|helper| text.contains(helper));
+    node(&[path], name, opens)
+}
+
+fn node(files: &[PathBuf], name: Option<&str>, in_browsers: bool) -> Result<()> {
+    packages::npm(&root().join("tests"))?;
     let mut tests = command("node");
-    tests
-        .env("CHROMIUM", setup::chromium()?)
-        .env("FIREFOX", setup::firefox()?);
-    tests.args(["--test", "--test-reporter=spec"]).args(files);
-    run(&mut tests, &format!("tests in {folder} failed, see above"))
+    tests.args(["--test", "--test-reporter=spec"]);
+    if in_browsers {
+        tests.env("CHROMIUM", browsers::chromium()?);
+        tests.env("FIREFOX", browsers::firefox()?);
+    }
+    if let Some(name) = name {
+        tests.arg(format!("--test-name-pattern={name}"));
+    }
+    run(tests.args(files), "tests failed, see above")
 }
 
 /// Files of a folder of the workspace whose name ends so, sorted.
@@ -286,33 +316,10 @@ fn files(folder: &str, end: &str) -> Result<Vec<PathBuf>> {
 mod tests {
     use super::*;
 
-    fn select(options: &[&str]) -> Result<Vec<Check>> {
-        selection(
-            &options
-                .iter()
-                .map(|option| option.to_string())
-                .collect::<Vec<_>>(),
-        )
-    }
-
     #[test]
-    fn everything_is_checked_unless_told() {
-        assert_eq!(select(&[]).unwrap().len(), Check::ALL.len());
-        assert_eq!(
-            select(&["--only", "page,fmt"]),
-            Ok(vec![Check::Page, Check::Fmt])
-        );
-    }
-
-    #[test]
-    fn an_unknown_check_is_refused() {
-        assert!(
-            select(&["--only", "fmt,lint"])
-                .unwrap_err()
-                .contains("fmt,lint")
-        );
-        assert!(select(&["--only"]).is_err());
-        assert!(select(&["wasm"]).is_err());
+    fn a_file_that_is_not_there_is_named() {
+        let error = node_file("tests/pkg", "nothing", None).unwrap_err();
+        assert!(error.contains("nothing.test.mjs"), "{error}");
     }
 
     #[test]

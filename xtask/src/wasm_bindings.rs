@@ -29,7 +29,7 @@ fn factory(module: &str) -> Result<String> {
             started = true;
         } else if line.starts_with("export ") || line.starts_with("import ") {
             return Err(format!(
-                "wasm-bindgen writes something new, `{line}`: teach xtask/src/glue.rs what it means"
+                "wasm-bindgen writes something new, `{line}`: teach xtask/src/wasm_bindings.rs what it means"
             ));
         } else if !line.starts_with("/* @ts-self-types") {
             body.push_str(line);
@@ -37,7 +37,7 @@ fn factory(module: &str) -> Result<String> {
         }
     }
     if !started || names.is_empty() {
-        return Err("wasm-bindgen writes no module that xtask/src/glue.rs knows".into());
+        return Err("wasm-bindgen writes no module that xtask/src/wasm_bindings.rs knows".into());
     }
     let names = names.join(", ");
     Ok(format!(

@@ -1,0 +1,46 @@
+//! What an extraction starts from, an implicit function, and what it makes, a mesh.
+
+use glam::{DVec3, Vec3};
+
+/// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
+/// Positions are in the unit frame.
+pub trait Implicit: Sync {
+    /// Memory that one evaluating worker reuses; what is left in it must not change a result.
+    type Scratch;
+
+    /// A new [`Implicit::Scratch`].
+    fn scratch(&self) -> Self::Scratch;
+
+    /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
+    fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
+
+    /// The fitted values at positions close to each other, one a position; NaN where no fitted function reaches.
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut Self::Scratch);
+
+    /// The fitted values with their gradients, one a position; `None` where no fitted function reaches.
+    fn gradients(
+        &self,
+        at: &[DVec3],
+        found: &mut [Option<(f64, DVec3)>],
+        scratch: &mut Self::Scratch,
+    );
+}
+
+/// A triangle mesh in the unit frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Positions; every one is used by a triangle.
+    pub vertices: Vec<Vec3>,
+    /// Unit normals that point outward, one a vertex.
+    pub normals: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Turns it to its other side.
+    pub fn invert(&mut self) {
+        self.normals.iter_mut().for_each(|n| *n = -*n);
+        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+}

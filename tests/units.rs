@@ -1,0 +1,425 @@
+//! Which way is up and what a coordinate is: what readers tell, what results keep, what writers make of it.
+#![cfg(not(target_arch = "wasm32"))]
+
+use pointweave::cloud::{Attribute, Crs, Unit, Viewpoints};
+use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, read, write};
+use pointweave::progress::Silent;
+use pointweave::{ReduceParams, SurfaceParams};
+
+const UP_Y: [f64; 3] = [0.0, 1.0, 0.0];
+const UP_Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+fn values(positions: &Positions) -> Vec<f64> {
+    match positions {
+        Positions::F32(values) => values.iter().map(|&x| f64::from(x)).collect(),
+        Positions::F64(values) => values.clone(),
+    }
+}
+
+/// Three points in a scanner's frame, z up, in millimetres.
+fn scan() -> RawCloud {
+    RawCloud {
+        normals: Some(vec![0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+        up: Some(UP_Z),
+        unit: Some(Unit::Millimetre),
+        ..RawCloud::new(Positions::F32(vec![
+            0.0, 0.0, 0.0, 300.0, 0.0, 0.0, 0.0, 200.0, 100.0,
+        ]))
+    }
+}
+
+fn written(cloud: &RawCloud, format: Output, options: WriteOptions) -> RawCloud {
+    let bytes = write(cloud, Some(&[0, 1, 2]), format, options).unwrap();
+    read(&bytes, Format::from_name(format.name()).unwrap()).unwrap()
+}
+
+#[test]
+fn a_glb_stands_with_y_up_in_metres() {
+    let back = written(&scan(), Output::Glb, WriteOptions::default());
+    let expected = [0.0, 0.0, 0.0, 0.3f32, 0.0, 0.0, 0.0, 0.1, -0.2].map(f64::from);
+    assert_eq!(values(&back.positions), expected);
+    assert_eq!(
+        back.normals.unwrap(),
+        [0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0]
+    );
+    assert_eq!((back.up, back.unit), (Some(UP_Y), Some(Unit::Metre)));
+}
+
+#[test]
+fn formats_without_a_rule_stay_as_they_are_unless_told() {
+    for format in [Output::Ply, Output::Xyz, Output::Obj, Output::Pcd] {
+        let back = written(&scan(), format, WriteOptions::default());
+        assert_eq!(
+            values(&back.positions),
+            values(&scan().positions),
+            "{}",
+            format.name()
+        );
+        let told = WriteOptions {
+            up: Some([0.0, -1.0, 0.0]),
+            unit: Some(Unit::Inch),
+            ..WriteOptions::default()
+        };
+        let turned = values(&written(&scan(), format, told).positions);
+        let inch = |x: f64| f64::from((x / 25.4) as f32);
+        assert_eq!(
+            turned[3..],
+            [inch(300.0), 0.0, 0.0, 0.0, inch(-100.0), inch(200.0)],
+            "{}",
+            format.name()
+        );
+    }
+}
+
+#[test]
+fn an_stl_is_z_up_in_millimetres() {
+    let mut cloud = scan();
+    (cloud.up, cloud.unit) = (Some(UP_Y), Some(Unit::Centimetre));
+    let back = written(&cloud, Output::Stl, WriteOptions::default());
+    assert_eq!(
+        values(&back.positions)[3..],
+        [3000.0, 0.0, 0.0, 0.0, -1000.0, 2000.0]
+    );
+}
+
+#[test]
+fn a_cloud_that_says_nothing_stays_as_it_is_and_cannot_be_told() {
+    let cloud = RawCloud {
+        up: None,
+        unit: None,
+        ..scan()
+    };
+    let back = written(&cloud, Output::Glb, WriteOptions::default());
+    assert_eq!(values(&back.positions), values(&cloud.positions));
+    for options in [
+        WriteOptions {
+            up: Some(UP_Y),
+            ..WriteOptions::default()
+        },
+        WriteOptions {
+            unit: Some(Unit::Metre),
+            ..WriteOptions::default()
+        },
+    ] {
+        assert_eq!(
+            write(&cloud, None, Output::Ply, options)
+                .unwrap_err()
+                .code(),
+            "bad-option"
+        );
+    }
+    let options = WriteOptions {
+        up: Some([0.0; 3]),
+        ..WriteOptions::default()
+    };
+    assert_eq!(
+        write(&scan(), None, Output::Ply, options)
+            .unwrap_err()
+            .code(),
+        "bad-option"
+    );
+    // Degrees are no lengths.
+    let degrees = RawCloud {
+        unit: Some(Unit::Degree),
+        ..scan()
+    };
+    assert!(write(&degrees, None, Output::Glb, WriteOptions::default()).is_ok());
+    let options = WriteOptions {
+        unit: Some(Unit::Metre),
+        ..WriteOptions::default()
+    };
+    assert_eq!(
+        write(&degrees, None, Output::Ply, options)
+            .unwrap_err()
+            .code(),
+        "bad-option"
+    );
+}
+
+#[test]
+fn origins_stay_exact() {
+    let mut cloud = scan();
+    cloud.unit = Some(Unit::Metre);
+    cloud.origin = Some([500_000.125, 4_000_000.25, 100.5]);
+    let glb = read(
+        &write(&cloud, None, Output::Glb, WriteOptions::default()).unwrap(),
+        Format::Glb,
+    )
+    .unwrap();
+    assert_eq!(
+        values(&glb.positions)[..3],
+        [500_000.125, 100.5, -4_000_000.25]
+    );
+    let las = read(
+        &write(&cloud, None, Output::Las, WriteOptions::default()).unwrap(),
+        Format::Las,
+    )
+    .unwrap();
+    for (found, local) in values(&las.positions)
+        .chunks_exact(3)
+        .zip(values(&cloud.positions).chunks_exact(3))
+    {
+        for k in 0..3 {
+            assert!((found[k] - local[k] - cloud.origin.unwrap()[k]).abs() < 1e-4);
+        }
+    }
+}
+
+#[test]
+fn viewpoints_go_along() {
+    let mut cloud = scan();
+    cloud.viewpoints = Viewpoints::new(&[1.0, 2.0, 3.0], None, 3).ok();
+    let options = WriteOptions {
+        up: Some(UP_Y),
+        ..WriteOptions::default()
+    };
+    let bytes = write(&cloud, None, Output::Pcd, options).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("VIEWPOINT 1 3 -2 1 0 0 0\n"), "{text}");
+}
+
+/// A cap of points over a plane, so that there is something to reduce and to mesh.
+fn cap() -> RawCloud {
+    let points = (0..2000).flat_map(|i| {
+        let (a, r) = (f64::from(i) * 2.399_963, (f64::from(i) / 2000.0).sqrt());
+        let (x, y) = (r * a.cos(), r * a.sin());
+        [x, y, 1.0 - r * r].map(|x| x as f32)
+    });
+    RawCloud {
+        up: Some(UP_Z),
+        unit: Some(Unit::Foot),
+        crs: Some(Crs {
+            wkt: Some("LOCAL_CS[\"site\"]".into()),
+            ..Crs::default()
+        }),
+        ..RawCloud::new(Positions::F32(points.collect()))
+    }
+}
+
+#[test]
+fn results_keep_them() {
+    let cloud = cap();
+    let reduced = pointweave::reduce(
+        &cloud.to_cloud().unwrap(),
+        &ReduceParams::default(),
+        &mut Silent,
+    )
+    .unwrap();
+    let back = RawCloud::of_cloud(&reduced.reduced.cloud);
+    assert_eq!(
+        (back.up, back.unit, &back.crs),
+        (cloud.up, cloud.unit, &cloud.crs)
+    );
+    let surface = pointweave::reconstruct(
+        &cloud.to_cloud().unwrap(),
+        &SurfaceParams::default(),
+        &mut Silent,
+    )
+    .unwrap();
+    let back = RawCloud::of_surface(&surface);
+    assert_eq!(
+        (back.up, back.unit, &back.crs),
+        (cloud.up, cloud.unit, &cloud.crs)
+    );
+    assert!(
+        surface
+            .report
+            .reduce
+            .doubts
+            .iter()
+            .all(|doubt| doubt.code != "sampled-from-faces")
+    );
+}
+
+#[test]
+fn points_of_faces_are_doubted_in_the_reports() {
+    let file = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    let options = pointweave::formats::ReadOptions::default();
+    let cloud = pointweave::formats::read_with(file.as_bytes(), Format::Off, &options).unwrap();
+    let reduced = pointweave::reduce(
+        &cloud.to_cloud().unwrap(),
+        &ReduceParams::default(),
+        &mut Silent,
+    )
+    .unwrap();
+    let doubt = &reduced.report.doubts[0];
+    assert_eq!(doubt.code, "sampled-from-faces");
+    assert!(doubt.message.contains("4 faces"), "{}", doubt.message);
+}
+
+#[test]
+fn pcd_keeps_colours_attributes_and_double_precision() {
+    let mut cloud = scan();
+    cloud.colors = Some(vec![1, 2, 3, 4, 5, 6, 7, 8, 9]);
+    cloud.attributes = vec![Attribute {
+        name: "intensity".into(),
+        values: vec![0.5, 1.0, 2.0],
+    }];
+    let back = read(
+        &write(&cloud, None, Output::Pcd, WriteOptions::default()).unwrap(),
+        Format::Pcd,
+    )
+    .unwrap();
+    assert_eq!(
+        (&back.positions, &back.normals),
+        (&cloud.positions, &cloud.normals)
+    );
+    assert_eq!(
+        (&back.colors, &back.attributes),
+        (&cloud.colors, &cloud.attributes)
+    );
+    let far = RawCloud::new(Positions::F64(vec![
+        500_000.001,
+        4e6,
+        1.0,
+        500_001.002,
+        4e6,
+        2.0,
+    ]));
+    let back = read(
+        &write(&far, None, Output::Pcd, WriteOptions::default()).unwrap(),
+        Format::Pcd,
+    )
+    .unwrap();
+    assert_eq!(values(&back.positions), values(&far.positions));
+}
+
+#[test]
+fn las_and_laz_keep_colours_attributes_normals_and_reference_systems() {
+    let mut cloud = scan();
+    cloud.colors = Some(vec![1, 2, 3, 4, 5, 6, 255, 8, 9]);
+    cloud.unit = Some(Unit::SurveyFoot);
+    let wkt = "PROJCS[\"p\",GEOGCS[\"g\",UNIT[\"degree\",0.017]],UNIT[\"US survey foot\",0.3048006096012192]]";
+    cloud.crs = Some(Crs {
+        wkt: Some(wkt.into()),
+        ..Crs::default()
+    });
+    let attribute = |name: &str, values: [f32; 3]| Attribute {
+        name: name.into(),
+        values: values.into(),
+    };
+    cloud.attributes = vec![
+        attribute("intensity", [0.0, 300.0, 65_535.0]),
+        attribute("classification", [2.0, 6.0, 200.0]),
+        attribute("quality", [0.25, -1.0, 7.5]),
+    ];
+    for (output, format) in [(Output::Las, Format::Las), (Output::Laz, Format::Las)] {
+        let bytes = write(&cloud, None, output, WriteOptions::default()).unwrap();
+        let back = read(&bytes, format).unwrap();
+        for (found, expected) in values(&back.positions)
+            .into_iter()
+            .zip(values(&cloud.positions))
+        {
+            assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+        }
+        assert_eq!(
+            (&back.colors, back.up, back.unit, &back.crs),
+            (&cloud.colors, Some(UP_Z), cloud.unit, &cloud.crs)
+        );
+        for Attribute { name, values } in &cloud.attributes {
+            let found = back
+                .attributes
+                .iter()
+                .find(|attribute| attribute.name == *name);
+            assert_eq!(
+                found.map(|attribute| &attribute.values),
+                Some(values),
+                "{name}"
+            );
+        }
+        assert_eq!(
+            bytes,
+            write(&cloud, None, output, WriteOptions::default()).unwrap()
+        );
+    }
+    // Shares of 1 are no whole numbers: they stay what they are.
+    cloud.attributes = vec![attribute("intensity", [0.0, 0.5, 1.0])];
+    let back = read(
+        &write(&cloud, None, Output::Las, WriteOptions::default()).unwrap(),
+        Format::Las,
+    )
+    .unwrap();
+    assert!(
+        back.attributes
+            .iter()
+            .any(|attribute| attribute.values == [0.0, 0.5, 1.0])
+    );
+}
+
+#[test]
+fn geotiff_keys_go_on() {
+    let crs = Crs {
+        keys: vec![1, 1, 0, 1, 3076, 0, 1, 9002],
+        doubles: vec![0.5],
+        ascii: "here|".into(),
+        ..Crs::default()
+    };
+    let cloud = RawCloud {
+        crs: Some(crs.clone()),
+        ..scan()
+    };
+    let back = read(
+        &write(&cloud, None, Output::Las, WriteOptions::default()).unwrap(),
+        Format::Las,
+    )
+    .unwrap();
+    assert_eq!((back.crs, back.unit), (Some(crs), Some(Unit::Foot)));
+}
+
+#[test]
+fn a_3mf_wants_triangles() {
+    assert_eq!(
+        write(&scan(), None, Output::ThreeMf, WriteOptions::default())
+            .unwrap_err()
+            .code(),
+        "needs-triangles"
+    );
+    let file = write(
+        &scan(),
+        Some(&[0, 1, 2]),
+        Output::ThreeMf,
+        WriteOptions::default(),
+    )
+    .unwrap();
+    let back = read(&file, Format::ThreeMf).unwrap();
+    assert_eq!(
+        (values(&back.positions), back.faces),
+        (values(&scan().positions), 1)
+    );
+    assert_eq!((back.up, back.unit), (Some(UP_Z), Some(Unit::Millimetre)));
+    // In metres, far from home, with colours.
+    let far = RawCloud {
+        unit: Some(Unit::Metre),
+        colors: Some(vec![1, 2, 3, 250, 251, 252, 0, 0, 0]),
+        origin: Some([500_000.25, 4e6, 0.0]),
+        ..scan()
+    };
+    let options = WriteOptions {
+        unit: Some(Unit::Metre),
+        ..WriteOptions::default()
+    };
+    let back = read(
+        &write(&far, Some(&[0, 1, 2]), Output::ThreeMf, options).unwrap(),
+        Format::ThreeMf,
+    )
+    .unwrap();
+    assert_eq!(
+        values(&back.positions)[..6],
+        [500_000.25, 4e6, 0.0, 500_300.25, 4e6, 0.0]
+    );
+    assert_eq!((back.colors, back.unit), (far.colors, Some(Unit::Metre)));
+}
+
+#[test]
+fn a_camera_looks_along_z_and_robots_stand_on_it() {
+    let pcd = |rows: &str| {
+        let count = rows.lines().count();
+        let text = format!(
+            "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {count}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\nDATA ascii\n{rows}"
+        );
+        read(text.as_bytes(), Format::Pcd).unwrap().up
+    };
+    assert_eq!(pcd("0.1 0.2 1\n-0.5 0.4 2\n"), Some([0.0, -1.0, 0.0]));
+    assert_eq!(pcd("0.1 0.2 1\n-3 0.4 2\n"), Some(UP_Z));
+    assert_eq!(pcd("0.1 0.2 1\n0 0 -1\n"), Some(UP_Z));
+}

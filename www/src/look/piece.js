@@ -1,0 +1,43 @@
+import { announce } from '../dom.js';
+
+/** A pointer that moves farther than this, in CSS pixels, turns the picture and chooses nothing. */
+const STILL = 4;
+
+/** Lets a person choose a triangle of the mesh: by a click, or by Enter for the one in the middle. */
+export class PieceChoice {
+  #canvas;
+  /** @type {((triangle: number) => void) | null} */
+  #chosen = null;
+  #down = { x: 0, y: 0 };
+
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {(x: number, y: number) => { layer: string, triangle: number } | null} pick
+   */
+  constructor(canvas, pick) {
+    this.#canvas = canvas;
+    const choose = (/** @type {number} */ x, /** @type {number} */ y) => {
+      const found = pick(x, y);
+      if (found?.layer === 'mesh') this.#chosen?.(found.triangle);
+      else announce('There is no mesh at this place');
+    };
+    canvas.addEventListener('pointerdown', ({ clientX, clientY }) => (this.#down = { x: clientX, y: clientY }));
+    canvas.addEventListener('click', ({ clientX, clientY }) => {
+      if (!this.#chosen || Math.hypot(clientX - this.#down.x, clientY - this.#down.y) > STILL) return;
+      const { left, top } = canvas.getBoundingClientRect();
+      choose(clientX - left, clientY - top);
+    });
+    canvas.addEventListener('keydown', (event) => {
+      if (!this.#chosen || event.key !== 'Enter') return;
+      event.preventDefault();
+      choose(canvas.clientWidth / 2, canvas.clientHeight / 2);
+    });
+  }
+
+  /** @param {((triangle: number) => void) | null} chosen  null: nothing is to be chosen */
+  ask(chosen) {
+    this.#chosen = chosen;
+    this.#canvas.classList.toggle('choosing', chosen !== null);
+    if (chosen) this.#canvas.focus();
+  }
+}

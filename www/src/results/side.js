@@ -1,0 +1,49 @@
+import { sideInWords } from 'pointweave';
+import { announce, byId } from '../dom.js';
+
+/** @import { SurfaceMesh } from 'pointweave' */
+
+/** Which side is out: what told it, and a button that turns it over. */
+export class SideCard {
+  #box = byId('side', HTMLElement);
+  #words = byId('side-words', HTMLElement);
+  #flip = byId('flip', HTMLButtonElement);
+  #piece = byId('flip-piece', HTMLButtonElement);
+  #ask;
+
+  /**
+   * @param {(triangle?: number) => void} flip  turns the piece of a triangle, or all
+   * @param {(chosen: ((triangle: number) => void) | null) => void} ask  has the person choose a triangle; null: no more
+   */
+  constructor(flip, ask) {
+    this.#ask = ask;
+    this.#flip.addEventListener('click', () => flip());
+    this.#piece.addEventListener('click', () => {
+      if (this.choosing) return this.stop();
+      this.#piece.ariaPressed = 'true';
+      announce('Choose the piece: click it in the picture');
+      ask((triangle) => flip(triangle));
+    });
+  }
+
+  /** A piece is to be chosen in the picture. */
+  get choosing() {
+    return this.#piece.ariaPressed === 'true';
+  }
+
+  /** No piece is to be chosen any more. */
+  stop() {
+    this.#piece.ariaPressed = 'false';
+    this.#ask(null);
+  }
+
+  /** @param {SurfaceMesh | null} mesh @param {{ all: boolean, piece: boolean }} byHand  what a person has turned */
+  show(mesh, { all, piece }) {
+    this.stop();
+    this.#box.hidden = !mesh;
+    if (!mesh) return;
+    const [first, ...rest] = sideInWords(mesh.report);
+    this.#words.textContent = `${first.toUpperCase()}${rest.join('')}${all ? '; all of it was turned by hand' : ''}${piece ? '; a piece was turned by hand' : ''}.`;
+    this.#piece.hidden = mesh.report.components < 2;
+  }
+}
