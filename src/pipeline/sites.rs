@@ -16,6 +16,9 @@ use glam::Vec3;
 /// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
 const MIN_REDUCED: usize = 64;
 
+/// Points of one terrace are off by the same, so that their mean is, too: noise of steps counts so many times.
+const TERRACE: f32 = 2.0;
+
 /// The reduced cloud, where its points are for the fit, and what is known of their outer side.
 pub(crate) type Reduction = (Reduced, Vec<Vec3>, Evidence);
 
@@ -117,7 +120,10 @@ pub(crate) fn sites(
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
-    let noise = Scales::measure(&tree).noise.min(input.all).max(input.steps);
+    let noise = Scales::measure(&tree)
+        .noise
+        .min(input.all)
+        .max(TERRACE * input.steps);
     let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
     Ok((sites, site_of))
 }
