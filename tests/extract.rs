@@ -651,7 +651,7 @@ fn auto_decides_for_each_component() {
     assert!(r.area() > whole + 0.3 * whole && r.area() < whole + 0.5 * whole);
 }
 
-/// A field that calls everything inside still gives a closed surface: the hull of the lattice.
+/// Caps know rims only, whatever the field says beyond them: the lid of a flat sheet lies on it.
 #[test]
 fn a_flat_sheet_closes_to_both_of_its_sides() {
     let value = |x: DVec3| x.z;
