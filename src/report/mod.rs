@@ -14,7 +14,7 @@ use serde::Serialize;
 pub use crate::base::clock::StageTimes;
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
-pub(crate) use knowledge::{doubts, doubts_of_faces, doubts_of_shape};
+pub(crate) use knowledge::{doubts, doubts_of_faces, doubts_of_shape, doubts_of_steps};
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -105,6 +105,8 @@ pub struct SurfaceReport {
     pub non_manifold_edges: usize,
     /// Genus of each component, the largest component first ([`Topology::genus`]).
     pub genus: Vec<i64>,
+    /// Holes that were closed and rims that were left open, the widest first.
+    pub holes: Vec<Hole>,
     /// Sub-domains that were split and fitted again.
     pub refinements: usize,
     /// Residual of the joined field at the input points.
@@ -117,6 +119,17 @@ pub struct SurfaceReport {
     pub orientation_energy_before: f64,
     /// What decided which side is out.
     pub orientation: OrientationReport,
+}
+
+/// A hole of a surface, or the outer rim of an open one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Hole {
+    /// Of a hole that was closed, that of the largest disc in it (twice the largest distance of what closes it from the
+    /// points); of a rim, that of the disc whose area it encloses. Fraction of the diagonal.
+    pub diameter: f64,
+    /// Whether the surface goes on across it.
+    pub closed: bool,
 }
 
 /// The connectivity of a triangle mesh.
