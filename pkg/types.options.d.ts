@@ -146,7 +146,8 @@ export interface ReconstructOptions {
   flip?: boolean;
   /**
    * Which inference chooses the signs of the local functions.
-   * - `'global'` (default): Strongest agreements first over the whole graph, then flips that lower the energy.
+   * - `'global'` (default): The signs of least energy over the whole graph, and every part by what is known of its outer
+   *   side.
    * - `'paper'`: Algorithm 1: an advancing front with belief propagation on local graphs.
    */
   propagation?: 'global' | 'paper';
