@@ -5,7 +5,9 @@
 mod made;
 
 use made::Kept;
-use pointweave::formats::{Format, Positions, RawCloud, Reading, detect, read};
+use pointweave::formats::{
+    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, detect, read,
+};
 
 fn values(cloud: &RawCloud) -> Vec<f64> {
     match &cloud.positions {
@@ -14,10 +16,20 @@ fn values(cloud: &RawCloud) -> Vec<f64> {
     }
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Reads a file whole and byte by byte: the same.
 fn both(bytes: &[u8], format: Format) -> RawCloud {
     let whole = read(bytes, format).unwrap_or_else(|error| panic!("{error}"));
-    let mut reading = Reading::new(None, None, bytes.len() as u64);
+    let mut reading = Reading::new(None, None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for byte in bytes {
         reading
             .push(&[*byte])

@@ -3,7 +3,7 @@
 
 use miniz_oxide::deflate::compress_to_vec;
 use pointweave::formats::{
-    Archive, Format, Positions, RawCloud, ReadOptions, Reading, detect, read, read_with,
+    Archive, FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, detect, read, read_with,
 };
 use std::io::Cursor;
 use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, colortype};
@@ -16,10 +16,20 @@ fn values(cloud: &RawCloud) -> Vec<f64> {
     }
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Reads a file whole and in small slices: the same count.
 fn both(bytes: &[u8], format: Format) -> RawCloud {
     let whole = read(bytes, format).unwrap_or_else(|error| panic!("{error}"));
-    let mut reading = Reading::new(Some(format), None, bytes.len() as u64);
+    let mut reading = Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for slice in bytes.chunks(7) {
         reading
             .push(slice)

@@ -25,7 +25,7 @@ import { UsageError } from './usage.js';
  * @property {boolean} json
  * @property {'auto' | number} threads
  * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
- * @property {import('./read-flags.js').ReadSaid & Record<string, any>} read how each is read
+ * @property {Record<string, any>} read how each is read
  * @property {Record<string, any>} own options of the function that has the command's name
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results

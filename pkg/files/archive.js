@@ -26,7 +26,6 @@ const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
  * @param {ByteSource} file
  * @param {ReadingOptions & { beside?: import('../types.js').Beside }} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
- * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
 export async function readScan(open, file, { beside, ...options }, watch) {

@@ -77,10 +77,10 @@ impl Xyz {
 
 impl Parser for Xyz {
     fn parse(&mut self, input: &mut Input, table: &mut Option<Table>) -> Result<Step> {
-        if input.place.byte == 0 {
-            if input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]) {
-                return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
-            }
+        if input.place.byte == 0
+            && (input.rest().starts_with(&[0xff, 0xfe]) || input.rest().starts_with(&[0xfe, 0xff]))
+        {
+            return Err(input.unsupported("UTF-8 or ASCII text", "UTF-16 text"));
         }
         while let Some(line) = input.line()? {
             let number = input.place.line;
@@ -128,7 +128,7 @@ fn read_line(
     values: &mut Vec<f64>,
 ) -> Result<Line> {
     let line = line.trim_ascii_end();
-    if line.is_empty() || is_comment(line) {
+    if line.is_empty() || is_comment(line) || plan.is_no_point(line) {
         return Ok(Line::Nothing);
     }
     if plan.dialect.split(line).nth(1).is_none()

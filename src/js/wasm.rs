@@ -38,7 +38,7 @@ pub fn lend_thread() {
     crate::base::pool::lend_thread();
 }
 
-/// `{ reduce, reconstruct }`: the defaults, which `pkg/engine/options.js` repeats.
+/// `{ reduce, reconstruct }`: the defaults, which `pkg/engine/options-table.js` has from the same table.
 #[wasm_bindgen]
 pub fn defaults() -> JsResult {
     object([

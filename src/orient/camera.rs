@@ -7,8 +7,8 @@
 
 use glam::{Vec2, Vec3};
 
-/// Points that are looked at, about.
-const SAMPLE: usize = 30_000;
+/// Points that are looked at, about. Fewer make larger cells, more of which hold an outline.
+const SAMPLE: usize = 200_000;
 /// Tangent of half the widest field of view: 60°.
 const WIDEST: f32 = 1.733;
 /// Share of the points that lie within it.

@@ -215,13 +215,16 @@ impl Solve<'_> {
     /// Turns closed components that are caves and of which nothing is known.
     fn turn_caves(&self, known: &Known, signs: &mut [f32]) {
         let is_free = |c: &[u32]| c.iter().all(|&s| known.values[s as usize] == 0.0);
-        let solids: Vec<&[u32]> = self
+        let mut solids: Vec<&[u32]> = self
             .components
             .iter()
             .map(Vec::as_slice)
             .filter(|c| self.kept[c[0] as usize] && is_free(c))
-            .filter(|c| self.domains.enclosed(c, signs) > CLOSED)
             .collect();
+        if solids.len() < 2 {
+            return;
+        }
+        solids.retain(|c| self.domains.enclosed(c, signs) > CLOSED);
         turn_caves(&solids, self.domains, signs);
     }
 }

@@ -10,7 +10,7 @@ import open3d as o3d
 
 while len(head := sys.stdin.buffer.read(4)) == 4:
     count = int(np.frombuffer(head, '<u4')[0])
-    values = np.frombuffer(sys.stdin.buffer.read(24 * (count + 1)), '<f8').reshape(-1, 3)
+    values = np.frombuffer(sys.stdin.buffer.read(24 * (count + 1)), '<f8').reshape(-1, 3).copy()
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(values[1:]))
     cloud.estimate_normals(o3d.geometry.KDTreeSearchParamKNN(30))
     cloud.orient_normals_consistent_tangent_plane(15)

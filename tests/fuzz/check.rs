@@ -1,6 +1,6 @@
 //! What holds of any bytes: a reader gives a cloud that fits together, or a typed error; and the same in slices.
 
-use pointweave::formats::{Format, Positions, RawCloud, Reading, read};
+use pointweave::formats::{FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, read};
 
 pub fn check(bytes: &[u8], formats: &[Format]) {
     for &format in formats {
@@ -61,9 +61,19 @@ fn check_cloud(cloud: &RawCloud) {
     assert!(points == 0 || cloud.to_cloud().is_ok());
 }
 
+/// Vertices, as [`read`] gives them.
+fn vertices() -> ReadOptions {
+    ReadOptions {
+        faces: FaceMode::Vertices,
+        ..Default::default()
+    }
+}
+
 /// Points and rows left out.
 fn read_slices(bytes: &[u8], size: usize, format: Format) -> pointweave::Result<(u64, usize)> {
-    let mut reading = Reading::new(Some(format), None, bytes.len() as u64);
+    let mut reading = Reading::new(Some(format), None, bytes.len() as u64)
+        .with_options(vertices())
+        .expect("options");
     for slice in bytes.chunks(size) {
         reading.push(slice)?;
         reading.take_block();

@@ -158,10 +158,11 @@ test('Rust has the same ranges', async () => {
       ['smoothing', [['auto', true], [0, true], [1e6, true], [1.1e6, false], [-1, false], ['other', false]]],
       ['resolution', [['auto', true], [1e-4, true], [0.25, true], [0.26, false], [9e-5, false]]],
       ['reduce', [[false, true], [true, false], [{}, true], [{ maxDepth: 22 }, false]]],
-      ...[['kernel', ['biharmonic', 'triharmonic', 'thin-plate']], ['propagation', ['global', 'paper']],
+      ...[['kernel', ['biharmonic', 'triharmonic', 'thin-plate']], ['propagation', ['global', 'paper']], ['orientation', ['auto', 'up', 'outward', 'inward']],
         ['boundary', ['auto', 'closed', 'open']]]
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
       ['orient', [[true, true], [1, false]]],
+      ['flip', [[true, true], ['no', false]]],
       ['sharp', [[false, true], ['no', false]]],
       ['distances', [[true, true], [1, false]]],
       ['keep', [[true, true], ['yes', false]]],

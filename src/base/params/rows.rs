@@ -49,8 +49,9 @@ impl<T: Amount> Amount for Option<T> {
 }
 
 /// `option` is the name in Rust; the error has JavaScript's.
-pub(super) fn check(option: &str, value: &impl Amount, range: &Range) -> Result<()> {
-    match value.amount() {
+#[inline(never)]
+pub(super) fn check(option: &str, value: Option<f64>, range: &Range) -> Result<()> {
+    match value {
         Some(found) if !range.contains(found) => Err(Error::BadOption {
             option: camel_case(option),
             expected: range.expected.into(),
@@ -62,11 +63,18 @@ pub(super) fn check(option: &str, value: &impl Amount, range: &Range) -> Result<
 
 /// `max_depth` is `maxDepth` in JavaScript.
 fn camel_case(name: &str) -> String {
-    let mut words = name.split('_');
-    let first = words.next().unwrap_or_default().to_string();
-    words.fold(first, |all, word| {
-        all + &word[..1].to_ascii_uppercase() + &word[1..]
-    })
+    let mut camel = String::with_capacity(name.len());
+    let mut is_first = false;
+    for letter in name.chars() {
+        if letter != '_' {
+            camel.push(match is_first {
+                true => letter.to_ascii_uppercase(),
+                false => letter,
+            });
+        }
+        is_first = letter == '_';
+    }
+    camel
 }
 
 macro_rules! table {
@@ -123,10 +131,10 @@ macro_rules! item {
         }
 
         impl $name {
-            fn validate(&self, option: &str) -> Result<()> {
+            fn validate(&self) -> Result<()> {
                 match self {
                     $( $name::$variant(value) => {
-                        $( check!($facet $kind value, &format!("{option}.{}", $word), $($fact)*); )*
+                        $( check!($facet $kind value, concat!("target.", $word), $($fact)*); )*
                     } )*
                 }
                 Ok(())
@@ -172,14 +180,14 @@ macro_rules! item {
 
 /// The check that a row's kind or one of its facets asks for.
 macro_rules! check {
-    (amount $value:expr, $option:expr) => { $value.validate($option)? };
+    (amount $value:expr, $option:expr) => { $value.validate()? };
     (nested $value:expr, $option:expr) => {
         if let Some(options) = &$value {
             options.validate()?;
         }
     };
     (range $kind:ident $value:expr, $option:expr, $($range:tt)*) => {
-        rows::check($option, $value, &range!($kind $($range)*))?
+        rows::check($option, rows::Amount::amount($value), &range!($kind $($range)*))?
     };
     ($($other:tt)*) => {};
 }
@@ -290,8 +298,8 @@ mod tests {
 
     #[test]
     fn what_is_not_given_is_not_checked_and_errors_have_the_name_in_javascript() {
-        assert!(check("max_share", &None::<f64>, &HALF_OPEN).is_ok());
-        let error = check("max_share", &Some(2.0), &HALF_OPEN).unwrap_err();
+        assert!(check("max_share", None::<f64>.amount(), &HALF_OPEN).is_ok());
+        let error = check("max_share", Some(2.0).amount(), &HALF_OPEN).unwrap_err();
         assert_eq!(
             error.to_string(),
             "option maxShare is 2: expected a number in (0, 1]"

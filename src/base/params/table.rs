@@ -168,7 +168,7 @@ table! {
 
     /// Which inference chooses the signs of the local functions.
     choice Propagation {
-        /// Strongest agreements first over the whole graph, then flips that lower the energy.
+        /// The signs of least energy over the whole graph, and every part by what is known of its outer side.
         Global "global",
         /// Algorithm 1: an advancing front with belief propagation on local graphs.
         Paper "paper",

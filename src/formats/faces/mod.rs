@@ -21,6 +21,7 @@ pub use looks::Picture;
 pub(super) use looks::{Look, Texture, Wrap};
 use normals::CornerNormals;
 use paint::Painter;
+#[cfg(feature = "packed")]
 pub(super) use paint::srgb;
 pub use sampling::Sampling;
 pub use triangles::Want;

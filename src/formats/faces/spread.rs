@@ -3,7 +3,9 @@
 //! Several candidates for each point are laid out by area, in a triangle along the R2 sequence (Roberts, "The Unreasonable
 //! Effectiveness of Quasirandom Sequences", 2018). Then darts are thrown (Cook, "Stochastic Sampling in Computer Graphics",
 //! 1986): candidates in random order are accepted where no accepted point of the same side is within a radius, which shrinks
-//! from round to round until there are enough (McCool and Fiume, "Hierarchical Poisson Disk Sampling Distributions", 1992).
+//! from round to round until there are enough (McCool and Fiume, "Hierarchical Poisson Disk Sampling Distributions", 1992). Where a
+//! surface ends a point has fewer others to keep apart from; so that rims do not get more than their share, every few
+//! hundred candidates, which stand for equal areas, have a quota.
 
 use super::vectors::{area_normal, dot, unit};
 use crate::base::rng::Rng;
@@ -13,6 +15,8 @@ const CANDIDATES: usize = 4;
 const MOST_CANDIDATES: usize = 6_000_000;
 /// Radii of the rounds, as shares of the distance in the densest packing of as many discs; at 0 all are accepted.
 const RADII: [f64; 6] = [0.80, 0.72, 0.64, 0.55, 0.4, 0.0];
+/// Candidates that share a quota: few enough for even shares, many enough that they seldom have to come close.
+const A_QUOTA: usize = 256;
 /// Points of two sides of a sheet do not keep apart: the cosine between their triangles' normals is under this.
 const OTHER_SIDE: f32 = -0.2;
 /// Steps of the R2 sequence: powers of the inverse of the plastic number.
@@ -133,13 +137,15 @@ fn throw(
     // Squared distance to the nearest accepted point of the same side, where it is within the first radius.
     let mut nearest = vec![f32::INFINITY; candidates.len()];
     let mut accepted = vec![false; candidates.len()];
-    let mut left = wanted.min(candidates.len());
+    let mut left = quotas(candidates.len(), wanted.min(candidates.len()));
     for radius in RADII {
         let squared = (radius * radius) as f32;
         waiting.retain(|&i| {
-            if left == 0 || nearest[i as usize] < squared {
+            let quota = &mut left[i as usize / A_QUOTA];
+            if *quota == 0 || nearest[i as usize] < squared {
                 return true;
             }
+            *quota -= 1;
             let (place, side) = (places[i as usize], normal(i));
             grid.near(place, |other| {
                 let p = places[other as usize];
@@ -153,11 +159,20 @@ fn throw(
                 }
             });
             accepted[i as usize] = true;
-            left -= 1;
             false
         });
     }
     accepted
+}
+
+/// How many of every [`A_QUOTA`] candidates are accepted; they sum to what is wanted.
+fn quotas(candidates: usize, wanted: usize) -> Vec<u32> {
+    let upto =
+        |candidate: usize| (candidate as u64 * wanted as u64 / candidates.max(1) as u64) as u32;
+    (0..candidates)
+        .step_by(A_QUOTA)
+        .map(|first| upto((first + A_QUOTA).min(candidates)) - upto(first))
+        .collect()
 }
 
 /// Candidates by cubic cell. Cells are hashed to lists: one may hold those of other cells, too, which are too far to matter.

@@ -103,7 +103,7 @@ impl Element {
     pub(super) fn is_splats(&self) -> bool {
         let names = self.names();
         let has = |name: &&str| names.iter().any(|own| own == name);
-        SPLAT.iter().all(|name| has(&name))
+        SPLAT.iter().all(has)
     }
 
     /// Bytes of a row at least: in text a digit and its separator for each value, in binary with empty lists.

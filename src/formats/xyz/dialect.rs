@@ -64,7 +64,7 @@ impl Dialect {
     }
 
     /// The values of a line, without quotes.
-    pub(super) fn split<'a>(self, line: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+    pub(super) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let mut rest = Some(match self.delimiter {
             // Tabs at the ends have empty values beside them.
             Delimiter::Mark(b'\t') => line,
@@ -154,7 +154,7 @@ fn is_none(token: &[u8]) -> bool {
         "na", "n/a", "#n/a", "null", "none", "nil", "nodata", "no data", "-", "--", "*", "?",
     ];
     let is = |none: &&str| token.eq_ignore_ascii_case(none.as_bytes());
-    NONE.iter().any(|none| is(&none)) || token.iter().all(|&b| b == b'*')
+    NONE.iter().any(is) || token.iter().all(|&b| b == b'*')
 }
 
 /// A colour as six or eight hexadecimal digits, after `#` or `0x` where they are `marked`.

@@ -296,11 +296,11 @@ fn place(axis: usize) -> Role {
 fn single(word: &str) -> Option<Role> {
     let is = |list: &&[&str]| list.contains(&word);
     for (family, axes) in ACROSS.iter().enumerate() {
-        if let Some(axis) = axes.iter().position(|axis| is(axis)) {
+        if let Some(axis) = axes.iter().position(&is) {
             return Some(Role::Across { axis, family });
         }
     }
-    let up = UP.iter().position(|heights| is(heights));
+    let up = UP.iter().position(&is);
     let glued = [
         ("coord", ""),
         ("", "coord"),
@@ -317,15 +317,8 @@ fn single(word: &str) -> Option<Role> {
         .position(|letter| word == format!("normal{letter}") || word == format!("norm{letter}"));
     up.map(|rank| Role::Up { rank })
         .or(letter.map(place))
-        .or(NORMAL
-            .iter()
-            .position(|axis| is(axis))
-            .or(lettered)
-            .map(Role::Normal))
-        .or(COLOR
-            .iter()
-            .position(|channel| is(channel))
-            .map(Role::Color))
+        .or(NORMAL.iter().position(&is).or(lettered).map(Role::Normal))
+        .or(COLOR.iter().position(is).map(Role::Color))
 }
 
 /// Lower case, without units in brackets and accents, taken apart at what is neither letter nor digit.

@@ -27,6 +27,8 @@ pub(super) struct Plan {
     hexadecimal: bool,
     /// Values beyond the columns are passed over.
     ragged: bool,
+    /// The letter that points have in front, where other lines have others (Hoppe, 1992).
+    letter: Option<u8>,
     pub(super) preview: Preview,
 }
 
@@ -93,14 +95,11 @@ impl Plan {
                 if !found.roles.iter().any(|role| role == "z") {
                     return Err(NoPlan::line(rows[0], "3 values that are numbers"));
                 }
-                Ok(Plan::new(
-                    dialect,
-                    found.roles,
-                    &grid,
-                    Vec::new(),
-                    false,
-                    found.weak,
-                ))
+                let plan = Plan::new(dialect, found.roles, &grid, Vec::new(), false, found.weak);
+                Ok(Plan {
+                    letter: letter_of(&rows, dialect),
+                    ..plan
+                })
             }
         }
     }
@@ -176,8 +175,15 @@ impl Plan {
             packed,
             hexadecimal,
             ragged,
+            letter: None,
             preview,
         }
+    }
+
+    /// Whether a line has another letter in front than points have.
+    pub(super) fn is_no_point(&self, line: &[u8]) -> bool {
+        let first = self.dialect.split(line).next();
+        self.letter.is_some_and(|letter| first != Some(&[letter]))
     }
 
     /// The values of a row, those that are passed over as 0.
@@ -239,6 +245,17 @@ impl Plan {
 fn is_small_packed(column: &Column) -> bool {
     column.values.iter().all(|v| v.is_nan() || v.fract() == 0.0)
         && column.values.iter().any(|v| *v > 255.0)
+}
+
+/// The letter in front of nearly all rows.
+fn letter_of(rows: &[&Numbered], dialect: Dialect) -> Option<u8> {
+    let first = |line: &&Numbered| match dialect.split(&line.bytes).next() {
+        Some([letter]) if letter.is_ascii_alphabetic() => Some(*letter),
+        _ => None,
+    };
+    let letter = rows.last().and_then(&first)?;
+    let same = rows.iter().filter(|row| first(row) == Some(letter)).count();
+    (10 * same >= 9 * rows.len()).then_some(letter)
 }
 
 /// Whether a line says something: it is neither blank nor only marks.

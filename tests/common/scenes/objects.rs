@@ -376,7 +376,7 @@ fn statue(r: &mut Rng, knows: Knows) -> Scene {
         DVec3::new(
             4.0 * a.cos(),
             4.0 * a.sin(),
-            if k % 2 == 0 { 0.6 } else { 2.0 },
+            if k.is_multiple_of(2) { 0.6 } else { 2.0 },
         )
     };
     let eyes: Vec<DVec3> = (0..6).map(eye).collect();

@@ -29,7 +29,7 @@ fn main() -> io::Result<()> {
     }
     let is_asked = |name: &str| names.is_empty() || names.iter().any(|n| name.contains(n.as_str()));
     println!(
-        "{:<62} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}  doubts",
+        "{:<62} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}  decided by; doubts",
         "scan", "points", "area %", "points %", "ms", "tangent %", "camera %"
     );
     for recipe in scenes::all() {
@@ -66,13 +66,25 @@ fn row(name: &str, scene: &Scene, peer: &mut Option<Peer>) -> io::Result<()> {
         None => [String::new(), String::new()],
     };
     let doubts: Vec<&str> = report.doubts.iter().map(|d| d.code).collect();
+    let sources = surface.report.orientation.sources.iter();
+    let sources: Vec<String> = sources
+        .map(|s| {
+            format!(
+                "{:?} {:.1}/{:.1}",
+                s.source,
+                100.0 * s.share,
+                100.0 * s.agreement
+            )
+        })
+        .collect();
     println!(
-        "{name:<62} {:>7} {:>8.3} {:>8.3} {ms:>8.1} {:>9} {:>9}  {}{}",
+        "{name:<62} {:>7} {:>8.3} {:>8.3} {ms:>8.1} {:>9} {:>9}  {}; {}{}",
         scene.points.len(),
         100.0 * right,
         100.0 * scene.right_points(&surface),
         peers[0],
         peers[1],
+        sources.join(", "),
         doubts.join(" "),
         if is_kept { "" } else { " <--" }
     );

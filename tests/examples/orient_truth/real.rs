@@ -11,14 +11,14 @@ type Make = fn() -> Option<Scene>;
 
 /// Their names, and how they are made; `None` where the files are not there.
 pub const ALL: &[(&str, Make)] = &[
-    ("real: raw bunny", || Some(bunny()?.0)),
+    ("real: raw bunny", || Some(bunny()?.scene)),
     ("real: raw bunny with poses", || {
-        let (scene, eyes, of, _) = bunny()?;
-        Some(scene.seen_from_each(eyes, of))
+        let bunny = bunny()?;
+        Some(bunny.scene.seen_from_each(bunny.eyes, bunny.of))
     }),
     ("real: raw bunny with normals", || {
-        let (scene, .., normals) = bunny()?;
-        Some(scene.with_normals(normals))
+        let bunny = bunny()?;
+        Some(bunny.scene.with_normals(bunny.normals))
     }),
     ("real: redwood", || {
         seen_from_origin("scans/redwood_fragment_002.ply")
@@ -103,8 +103,17 @@ fn airborne(name: &str) -> Option<Scene> {
     Some(scene.seen_from_above())
 }
 
+/// The scene and what may be told of it.
+struct Bunny {
+    scene: Scene,
+    eyes: Vec<DVec3>,
+    /// Which of them saw each point.
+    of: Vec<u32>,
+    normals: Vec<DVec3>,
+}
+
 /// Ten range images in one frame, with the place that each was seen from, and the normals of the mesh that its authors made.
-fn bunny() -> Option<(Scene, Vec<DVec3>, Vec<u32>, Vec<DVec3>)> {
+fn bunny() -> Option<Bunny> {
     let poses = std::fs::read_to_string(path("scans/bunny_raw/bun.conf")).ok()?;
     let mut points = Vec::new();
     let (mut eyes, mut of) = (Vec::new(), Vec::new());
@@ -133,9 +142,14 @@ fn bunny() -> Option<(Scene, Vec<DVec3>, Vec<u32>, Vec<DVec3>)> {
         tree.knn(p.as_vec3(), 1, &mut found);
         normals[tree.order[found[0].index as usize] as usize]
     };
-    let known = points.iter().map(|&p| outward(p)).collect();
+    let normals = points.iter().map(|&p| outward(p)).collect();
     let truth = move |p: DVec3, n: DVec3| Some(outward(p).dot(n) > 0.0);
-    Some((Scene::new(Sure::Told, points, truth), eyes, of, known))
+    Some(Bunny {
+        scene: Scene::new(Sure::Told, points, truth),
+        eyes,
+        of,
+        normals,
+    })
 }
 
 /// The vertices of the bunny and their normals, from its text.
