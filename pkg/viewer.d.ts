@@ -32,6 +32,8 @@ export interface Drawable extends Placed {
   indices?: Uint32Array;
   /** Which way is up, where that is known. */
   up?: [number, number, number];
+  /** It was scanned from the air: z is up. */
+  seenFromAbove?: boolean;
   /** Of a cloud that was read: formats of surveying have z up. */
   file?: Pick<FileCloud['file'], 'format'>;
 }
@@ -145,6 +147,7 @@ export interface Viewer extends EventTarget {
   /**
    * Shows a cloud, a mesh or a GLB alone, whole, from the first look: as the layer `'points'` or `'mesh'`, of a GLB as both where it
    * holds both. What else is set later is placed beside it, in world coordinates.
+   * Throws `bad-input`, `bad-length`, `bad-index` or `empty-cloud` where the arrays do not fit, and so does `set`.
    * @param options frame: what to fit, where it is known; default is the box of what is shown
    */
   show(what: Drawable | Model, options?: { frame?: Frame }): void;
@@ -208,7 +211,8 @@ export interface Viewer extends EventTarget {
 
 /**
  * A viewer for a canvas, which must not have a context of another kind than `'2d'`. Its pixels follow its size in the page; one
- * that is in no page keeps the pixels that it has. Throws `no-webgl` where there is no WebGL 2.
+ * that is in no page keeps the pixels that it has. Throws `no-webgl` where there is no WebGL 2, and
+ * `bad-input` for what is no such canvas.
  */
 export function createViewer(canvas: HTMLCanvasElement, options?: ViewerOptions): Viewer;
 

@@ -402,7 +402,7 @@ fn noise_is_manifold() {
     for seed in 0..3u64 {
         let h = 1.0 / 60.0;
         let noise = |x: DVec3| {
-            let p = (x / h).round().as_i64vec3() + 1000;
+            let p = (x / h).round().as_ivec3() + 1000;
             let mut rng = Rng::new(seed + ((p.x as u64) << 40 | (p.y as u64) << 20 | p.z as u64));
             rng.next_u64();
             h * (rng.uniform() - 0.5)

@@ -5,8 +5,8 @@ import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { doubtLines, infoLines, pointsOf, reportLine } from './report-text.js';
 import { UsageError } from './usage.js';
-import { doubtLines, infoLines, pointsOf, reportLine } from './words.js';
 
 /** @import { Engine } from '../types.js' */
 /** @import { Job, Task } from './arguments.js' */

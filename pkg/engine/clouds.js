@@ -1,7 +1,7 @@
 /** The caller's clouds on their way in: of the right kind, and no longer the caller's memory. */
 import { own } from './arrays.js';
 import { UNITS } from './axes.js';
-import { PointweaveError } from './errors.js';
+import { badInput, expectArray } from './inputs.js';
 
 /** @import { PointCloud } from '../types.js' */
 
@@ -74,20 +74,4 @@ function expectViewpoints(viewpoints) {
   const { positions, of } = fields(viewpoints, 'viewpoints');
   expectArray('viewpoints.positions', positions, Float64Array);
   if (of !== undefined) expectArray('viewpoints.of', of, Uint32Array);
-}
-
-/**
- * @param {string} name
- * @param {unknown} value
- * @param {Function & { name: string }} type
- * @param {string} [expected]
- */
-function expectArray(name, value, type, expected = `a ${type.name}`) {
-  if (!(value instanceof type)) throw badInput(name, expected, value);
-}
-
-/** @param {string} name @param {string} expected @param {unknown} found */
-function badInput(name, expected, found) {
-  const kind = found === null ? 'null' : typeof found === 'object' ? found.constructor?.name ?? 'object' : typeof found;
-  return new PointweaveError({ code: 'bad-input', message: `${name} is of type ${kind}: expected ${expected}`, expected, found: kind });
 }

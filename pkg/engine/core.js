@@ -19,7 +19,7 @@ import { track } from './progress.js';
  * @typedef {{
  *   instantiate: (from: { module_or_path: WebAssembly.Module, memory?: WebAssembly.Memory }) => Promise<unknown>,
  *   panicMessage: () => string,
- * } & { [call in Request['call']]?: (...args: any[]) => any }} Glue
+ * } & { [call in Request['call']]?: (...args: any[]) => any }} Bindings
  */
 
 /** The engine's builds, and those that hold readers of files, decoders of pictures, or writers alone. @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports'} WasmBuild */
@@ -32,23 +32,23 @@ import { track } from './progress.js';
  */
 
 export class Core {
-  /** @type {Glue} */
-  #glue;
+  /** @type {Bindings} */
+  #bindings;
   /** Whether it can be called again. */
   alive = true;
 
-  /** @param {Glue} glue an instance of its own, started */
-  constructor(glue) {
-    this.#glue = glue;
+  /** @param {Bindings} bindings an instance of its own, started */
+  constructor(bindings) {
+    this.#bindings = bindings;
   }
 
   /**
-   * @param {Glue} glue
+   * @param {Bindings} bindings
    * @param {CoreOptions} options
    */
-  static async start(glue, { module, memory }) {
-    await glue.instantiate({ module_or_path: module, memory });
-    return new Core(glue);
+  static async start(bindings, { module, memory }) {
+    await bindings.instantiate({ module_or_path: module, memory });
+    return new Core(bindings);
   }
 
   /**
@@ -59,7 +59,7 @@ export class Core {
   run({ call, args }, listener) {
     const progress = track(call, listener);
     try {
-      const result = this.#glue[call]?.(...args, progress.update);
+      const result = this.#bindings[call]?.(...args, progress.update);
       progress.finish();
       return result;
     } catch (thrown) {
@@ -71,7 +71,7 @@ export class Core {
 
   #panic() {
     try {
-      return this.#glue.panicMessage();
+      return this.#bindings.panicMessage();
     } catch {
       return ''; // the instance is too broken even to say why
     }

@@ -1,6 +1,6 @@
 /** Calls into one instance in the caller's thread, all but `read` synchronous: `direct.js` and `direct.node.js` export them. */
 import { direction } from './axes.js';
-import { awake } from './keep-alive.js';
+import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
@@ -9,7 +9,7 @@ import { EXPORTED, checkCoreOptions, checkModel, checkOptions } from './options.
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { slicesOf } from '../files/byte-source.js';
+import { byteSourceOf } from '../files/byte-source.js';
 
 const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
 
@@ -41,13 +41,13 @@ function ownWriters({ meshopt, up, ...plain }) {
 }
 
 /**
- * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadGlue'>} platform
+ * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadBindings'>} platform
  * @returns {typeof import('../types.core.js').load}
  */
 export function makeLoad(platform) {
   return async (options) => {
     const { wasmUrl } = checkCoreOptions(options);
-    const core = await awake(start(platform, wasmUrl));
+    const core = await keepAlive(start(platform, wasmUrl));
     const calls = Object.entries(ARGUMENTS).map(([call, args]) => [
       call,
       (/** @type {any} */ subject, /** @type {any} */ options) =>
@@ -62,8 +62,8 @@ export function makeLoad(platform) {
  * @param {import('../types.js').EngineOptions['wasmUrl']} wasmUrl
  */
 async function start(platform, wasmUrl) {
-  const [module, glue] = await Promise.all([platform.compile('single', wasmUrl), platform.loadGlue('single')]);
-  return Core.start(glue, { build: 'single', module });
+  const [module, bindings] = await Promise.all([platform.compile('single', wasmUrl), platform.loadBindings('single')]);
+  return Core.start(bindings, { build: 'single', module });
 }
 
 /**
@@ -86,16 +86,16 @@ function run(core, call, args, options) {
  * @param {any} data
  * @param {unknown} options
  */
-async function read({ compile, loadGlue }, wasmUrl, data, options) {
+async function read({ compile, loadBindings }, wasmUrl, data, options) {
   const { own, transfer, signal = NEVER, onProgress } = checkOptions('read', options);
   signal.throwIfAborted();
-  const file = slicesOf(data, transfer);
+  const file = byteSourceOf(data, transfer);
   /** @type {import('../files/archive.js').Open} */
   const open = async (build, job) => {
-    const [module, glue] = await Promise.all([compile(build, wasmUrl), loadGlue(build)]);
-    const host = await inProcessHost(glue, { build, module });
+    const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
+    const host = await inProcessHost(bindings, { build, module });
     try {
-      return await awake(job((request) => host.run(request, { signal })));
+      return await keepAlive(job((request) => host.run(request, { signal })));
     } catch (error) {
       throw readerError(error, build);
     }

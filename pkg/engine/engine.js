@@ -3,7 +3,7 @@
  * that does them.
  */
 import { direction } from './axes.js';
-import { awake } from './keep-alive.js';
+import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
@@ -13,11 +13,11 @@ import { EXPORTED, checkEngineOptions, checkModel, checkOptions } from './option
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { slicesOf } from '../files/byte-source.js';
+import { byteSourceOf } from '../files/byte-source.js';
 
 /** @import { Build, EngineOptions } from '../types.js' */
 /** @import { Host, Watch, WorkerLike } from './worker-host.js' */
-/** @import { Glue, Request, WasmBuild } from './core.js' */
+/** @import { Bindings, Request, WasmBuild } from './core.js' */
 
 /**
  * What differs between a browser and Node.
@@ -26,7 +26,7 @@ import { slicesOf } from '../files/byte-source.js';
  * @property {() => number} cores
  * @property {() => { possible: boolean, reason: string }} threads whether memory can be shared here, and why
  * @property {(build: WasmBuild, wasmUrl: EngineOptions['wasmUrl']) => Promise<WebAssembly.Module>} compile
- * @property {(build: WasmBuild) => Promise<Glue>} loadGlue an instance of its own, not started
+ * @property {(build: WasmBuild) => Promise<Bindings>} loadBindings an instance of its own, not started
  * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
@@ -110,7 +110,7 @@ export class Engine {
   /** @param {any} data @param {any} [options] */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
-    const file = slicesOf(data, transfer);
+    const file = byteSourceOf(data, transfer);
     const given = { name: data.name, ...own };
     return this.#queued(watch, async (signal) => {
       /** @type {import('../files/archive.js').Open} */
@@ -178,7 +178,7 @@ export class Engine {
     this.#calls++;
     clearTimeout(this.#idle);
     try {
-      return await awake(work());
+      return await keepAlive(work());
     } finally {
       this.#calls--;
       if (this.#calls === 0 && this.#host && this.#idleMs <= LONGEST_TIMER_MS) {
@@ -255,12 +255,12 @@ export class Engine {
    * @returns {Promise<T>}
    */
   async #withModule(build, signal, job) {
-    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const { compile, loadBindings, startWorker, worker } = this.#platform;
     const module = await unlessAborted(compile(build, this.#wasmUrl), signal);
     const inWorker = this.build === 'threads' || (this.#worker ?? worker);
     const host = await (inWorker
       ? workerHost(() => startWorker(this.#workerUrl), { build, threads: 1, module })
-      : inProcessHost(await loadGlue(build), { build, module }));
+      : inProcessHost(await loadBindings(build), { build, module }));
     try {
       return await job((request) => host.run(request, { signal }));
     } finally {
@@ -283,7 +283,7 @@ export class Engine {
 
   async #startBuild() {
     const { build, threads } = this;
-    const { compile, loadGlue, startWorker, worker } = this.#platform;
+    const { compile, loadBindings, startWorker, worker } = this.#platform;
     const module = await compile(build, this.#wasmUrl);
     const startOne = () => startWorker(this.#workerUrl);
     if (build === 'threads') {
@@ -294,7 +294,7 @@ export class Engine {
     }
     return this.#worker ?? worker
       ? workerHost(startOne, { build, threads, module })
-      : inProcessHost(await loadGlue(build), { build, module });
+      : inProcessHost(await loadBindings(build), { build, module });
   }
 }
 

@@ -1,4 +1,4 @@
-/** Waiting that keeps Node waiting, too. */
+/** Keeps Node's event loop alive while a promise is pending. */
 
 /** As long as a timer can be. */
 const LONG_MS = 2 ** 31 - 1;
@@ -9,7 +9,7 @@ const LONG_MS = 2 ** 31 - 1;
  * @template T
  * @param {Promise<T>} promise
  */
-export async function awake(promise) {
+export async function keepAlive(promise) {
   const timer = setInterval(() => {}, LONG_MS);
   try {
     return await promise;

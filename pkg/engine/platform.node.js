@@ -4,7 +4,7 @@ import { availableParallelism } from 'node:os';
 import { pathToFileURL } from 'node:url';
 import { Worker } from 'node:worker_threads';
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './wasm-bindings.js';
+import { loadBindings } from './wasm-bindings.js';
 import { compileOnce } from './modules.js';
 
 /** @type {import('./engine.js').Platform} */
@@ -13,7 +13,7 @@ export const platform = {
   cores: availableParallelism,
   threads: () => ({ possible: true, reason: 'Node has threads' }),
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl).href, compileFrom),
-  loadGlue,
+  loadBindings,
   startWorker(workerUrl) {
     const script = workerUrl ? new URL(workerUrl, pathToFileURL('./')) : new URL('../worker.node.js', import.meta.url);
     const worker = new Worker(script, { name: 'pointweave', execArgv: [] });

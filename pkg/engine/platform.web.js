@@ -1,6 +1,6 @@
 /** Browsers. Nothing here runs before an engine is made, so a server may import it. */
 import { PointweaveError } from './errors.js';
-import { loadGlue } from './wasm-bindings.js';
+import { loadBindings } from './wasm-bindings.js';
 import { compileOnce } from './modules.js';
 import { startScript } from './worker-script.js';
 
@@ -13,7 +13,7 @@ export const platform = {
       ? { possible: true, reason: 'the page is cross-origin isolated' }
       : { possible: false, reason: 'the page is not cross-origin isolated' },
   compile: (build, wasmUrl) => compileOnce(wasmFile(build, wasmUrl), compileFrom),
-  loadGlue,
+  loadBindings,
   startWorker(workerUrl) {
     const worker = startScript(workerUrl);
     return {

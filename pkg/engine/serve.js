@@ -6,7 +6,7 @@
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { toRecord } from './errors.js';
-import { loadGlue } from './wasm-bindings.js';
+import { loadBindings } from './wasm-bindings.js';
 
 /**
  * @typedef {{ start: import('./core.js').CoreOptions & { stop?: Int32Array } } | { request: import('./core.js').Request }} ToWorker
@@ -32,7 +32,7 @@ export function serve(port) {
       });
     }
     stop = message.start.stop;
-    core = await Core.start(await loadGlue(message.start.build), message.start);
+    core = await Core.start(await loadBindings(message.start.build), message.start);
   };
 
   port.listen((message) => {

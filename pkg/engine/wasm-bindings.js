@@ -1,6 +1,6 @@
 /** The modules that wasm-bindgen writes. Their names are spelled out, for bundlers to see them. */
 
-/** @type {Record<import('./core.js').WasmBuild, () => Promise<{ makeGlue: () => import('./core.js').Glue }>>} */
+/** @type {Record<import('./core.js').WasmBuild, () => Promise<{ makeBindings: () => import('./core.js').Bindings }>>} */
 const MODULES = {
   single: () => import('../wasm/single/pointweave.js'),
   threads: () => import('../wasm/threads/pointweave.js'),
@@ -15,9 +15,9 @@ const MODULES = {
 /**
  * An instance of its own, not started. Nothing keeps it but its owner.
  * @param {import('./core.js').WasmBuild} build
- * @returns {Promise<import('./core.js').Glue>}
+ * @returns {Promise<import('./core.js').Bindings>}
  */
-export async function loadGlue(build) {
-  const { makeGlue } = await MODULES[build]();
-  return makeGlue();
+export async function loadBindings(build) {
+  const { makeBindings } = await MODULES[build]();
+  return makeBindings();
 }

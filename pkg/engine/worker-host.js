@@ -1,13 +1,10 @@
-/**
- * Where an engine's work is done: in this thread, or in a worker with or without more that lend it
- * their threads. A host takes one request at a time.
- */
+/** Runs requests one at a time, in this thread, in a worker, or in a worker with a thread pool. */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { PointweaveError, isFatal } from './errors.js';
 
 /** @import { Build, Progress } from '../types.js' */
-/** @import { CoreOptions, Glue, Request } from './core.js' */
+/** @import { CoreOptions, Bindings, Request } from './core.js' */
 /** @import { FromWorker, ToWorker } from './serve.js' */
 
 /**
@@ -39,12 +36,12 @@ const GRACE_MS = 60;
 const POOL_LIMIT_MS = 30_000;
 
 /**
- * @param {Glue} glue of the single-threaded build
+ * @param {Bindings} bindings of the single-threaded build
  * @param {CoreOptions} options
  * @returns {Promise<Host>}
  */
-export async function inProcessHost(glue, options) {
-  const core = await Core.start(glue, options);
+export async function inProcessHost(bindings, options) {
+  const core = await Core.start(bindings, options);
   let ended = false;
   return {
     async run(request, watch) {

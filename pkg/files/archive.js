@@ -2,13 +2,13 @@
 import { PointweaveError } from '../engine/errors.js';
 import { finder, lastOf } from './beside.js';
 import { merged } from './merging.js';
-import { slicesOf } from './byte-source.js';
+import { byteSourceOf } from './byte-source.js';
 import { readFile, readerOf } from './reading.js';
 
 /** @import { FileCloud, Format, Progress } from '../types.js' */
 /** @import { Request } from '../engine/core.js' */
 /** @import { Reader, ReadingOptions } from './reading.js' */
-/** @import { Slices } from './byte-source.js' */
+/** @import { ByteSource } from './byte-source.js' */
 
 /**
  * Does something with the wasm of a reader, or of pictures.
@@ -23,7 +23,7 @@ const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
 
 /**
  * @param {Open} open
- * @param {Slices} file
+ * @param {ByteSource} file
  * @param {ReadingOptions & { beside?: import('../types.js').Beside }} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
  * @returns {Promise<FileCloud>}
@@ -48,14 +48,14 @@ export async function readScan(open, file, { beside, ...options }, watch) {
     const { content } = (await unpack(at))[at];
     const inner = { ...options, name: entries[at].name || undefined };
     const part = { ...watch, onProgress: watch.onProgress && partOf(watch.onProgress, i, chosen.length) };
-    clouds.push(await readOne(open, slicesOf(content, true), inner, part, inside));
+    clouds.push(await readOne(open, byteSourceOf(content, true), inner, part, inside));
   }
   return merged(clouds, chosen.map((at) => entries[at].name));
 }
 
 /**
  * @param {Open} open
- * @param {Slices} file
+ * @param {ByteSource} file
  * @param {ReadingOptions} options
  * @param {Parameters<typeof readScan>[3]} watch
  * @param {(name: string) => Promise<Uint8Array | undefined>} find
@@ -73,13 +73,13 @@ function orNothing(error) {
   throw error;
 }
 
-/** @param {Slices} file */
+/** @param {ByteSource} file */
 async function isArchive(file) {
   const [a, b, c] = (await file.read(0)).subarray(0, 4);
   return (a === 0x50 && b === 0x4b && (c === 3 || c === 5)) || (a === 0x1f && b === 0x8b);
 }
 
-/** @param {Slices} file @param {AbortSignal} signal */
+/** @param {ByteSource} file @param {AbortSignal} signal */
 async function wholeOf(file, signal) {
   const whole = new Uint8Array(file.size);
   for (let at = 0; at < file.size; ) {

@@ -1,12 +1,12 @@
-/** A file in slices: from a Blob, which may lie on a disk, or from the caller's bytes. */
+/** Bytes that are read slice by slice: of a Blob, which may lie on a disk, or of the caller's array. */
 import { own } from '../engine/arrays.js';
 import { PointweaveError } from '../engine/errors.js';
 
-/** So much is read at once: little beside a large file, and enough that calls cost nothing. */
+/** Slice size: small against large files, large enough that per-call overhead does not show. */
 const SLICE = 4 << 20;
 
 /**
- * @typedef {object} Slices
+ * @typedef {object} ByteSource
  * @property {number} size in bytes
  * @property {(at: number) => Promise<Uint8Array>} read the bytes from `at` on, in memory of their own
  */
@@ -15,9 +15,9 @@ const SLICE = 4 << 20;
  * The first slice of bytes is copied before this returns, the others when they are read.
  * @param {unknown} data
  * @param {boolean} [transfer] take the caller's buffer
- * @returns {Slices}
+ * @returns {ByteSource}
  */
-export function slicesOf(data, transfer) {
+export function byteSourceOf(data, transfer) {
   if (typeof Blob !== 'undefined' && data instanceof Blob) {
     return { size: data.size, read: async (at) => new Uint8Array(await data.slice(at, at + SLICE).arrayBuffer()) };
   }

@@ -46,7 +46,7 @@ import { kept, leftOutOf } from './left-out.js';
  * @typedef {{ positions: Float64Array, starts: Float64Array, of: Uint32Array }} Stations
  */
 
-export class Columns {
+export class PointColumns {
   /** Of positions, normals, colours; then of the attributes. @type {Map<string, Column>} */
   #columns = new Map();
   /** @type {Map<string, Column>} */

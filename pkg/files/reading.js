@@ -1,11 +1,11 @@
 /** A file to a cloud, slice by slice, by the wasm that has its reader. */
-import { Columns } from './point-columns.js';
+import { PointColumns } from './point-columns.js';
 import { PointweaveError } from '../engine/errors.js';
 
 /** @import { FileCloud, Format, Progress } from '../types.js' */
 /** @import { Block, Summary } from './point-columns.js' */
 /** @import { Request, WasmBuild } from '../engine/core.js' */
-/** @import { Slices } from './byte-source.js' */
+/** @import { ByteSource } from './byte-source.js' */
 
 /** The builds that hold readers alone. @typedef {Extract<WasmBuild, 'files' | 'las' | 'e57' | 'packed'>} Reader */
 
@@ -29,7 +29,7 @@ const READERS = [
 
 /**
  * The build that reads a file: by the format that the caller says, else by how the file starts.
- * @param {Slices} file
+ * @param {ByteSource} file
  * @param {Format} [format]
  * @returns {Promise<Reader>}
  */
@@ -48,14 +48,14 @@ export async function readerOf(file, format) {
 
 /**
  * @param {(request: Request) => Promise<any>} ask one request of the wasm that has the reader
- * @param {Slices} file
+ * @param {ByteSource} file
  * @param {ReadingOptions} options
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
  * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
 export async function readFile(ask, file, options, { signal, onProgress }, { find, decode }) {
-  const columns = new Columns();
+  const columns = new PointColumns();
   let told = 0;
   /** @param {number} share */
   const tell = (share) => {

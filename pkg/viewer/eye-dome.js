@@ -3,8 +3,10 @@
  * log depth. It gives shape to clouds without normals, for one pass over the screen. The alpha of what was drawn says how much a
  * pixel faces us: 1 wholly; ½ not at all, so it takes no shade and lets the background through; 0 is background.
  */
-import { DepthTexture, NearestFilter, ShaderMaterial, UnsignedIntType, Vector2, WebGLRenderTarget } from 'three';
-import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
+import { BufferAttribute, BufferGeometry, DepthTexture, Mesh, NearestFilter, ShaderMaterial, UnsignedIntType, Vector2, WebGLRenderTarget } from 'three';
+
+/** A triangle that covers the screen. */
+const SCREEN = Float32Array.of(-1, -1, 0, 3, -1, 0, -1, 3, 0);
 
 export class EyeDome {
   #target = new WebGLRenderTarget(1, 1, {
@@ -61,7 +63,11 @@ export class EyeDome {
       }`,
   });
 
-  #quad = new FullScreenQuad(this.#material);
+  #screen = new Mesh(new BufferGeometry().setAttribute('position', new BufferAttribute(SCREEN, 3)), this.#material);
+
+  constructor() {
+    this.#screen.frustumCulled = false;
+  }
 
   /** At least so large, in pixels. @param {number} width @param {number} height */
   grow(width, height) {
@@ -95,6 +101,6 @@ export class EyeDome {
     uniforms.strength.value = strength;
     uniforms.parallel.value = camera.projectionMatrix.elements[15] === 1;
     renderer.clear();
-    this.#quad.render(renderer);
+    renderer.render(this.#screen, camera);
   }
 }

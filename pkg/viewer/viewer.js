@@ -1,5 +1,6 @@
 /** A viewer: a canvas, what it shows, and how one moves around that. */
 import { PerspectiveCamera, Scene } from 'three';
+import { contextOf, expectDrawable } from './checks.js';
 import { COLORS } from './colors.js';
 import { frameOf } from './frame.js';
 import { MOVES, listenToKeys } from './keyboard.js';
@@ -30,6 +31,11 @@ export function createViewer(canvas, options) {
   return new CanvasViewer(canvas, options);
 }
 
+/** @param {Drawable | Model} what @returns {what is Model} */
+function isModel(what) {
+  return typeof what === 'object' && what !== null && 'kind' in what;
+}
+
 class CanvasViewer extends EventTarget {
   width = 0;
   height = 0;
@@ -46,7 +52,7 @@ class CanvasViewer extends EventTarget {
   #size;
   /** @type {Frame | null} */
   #frame = null;
-  /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'file' | 'origin'>} */
+  /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'seenFromAbove' | 'file' | 'origin'>} */
   #first = {};
   /** @type {string | Split} */
   #view = 'points';
@@ -63,7 +69,7 @@ class CanvasViewer extends EventTarget {
   constructor(canvas, { interactive = true, keys = true, embedded = true, autoRotate = false, up = 'auto', colors = {}, insets = {} } = {}) {
     super();
     this.#canvas = canvas;
-    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    this.context = contextOf(canvas);
     this.#stage = new Stage({ ...COLORS, ...colors });
     this.scene.add(this.#stage.root);
     this.#orbit = new Orbit(this.camera, this.#stage.root, canvas, embedded, (by) => {
@@ -90,8 +96,10 @@ class CanvasViewer extends EventTarget {
 
   /** Shows a cloud, a mesh or a GLB alone, whole, from the first look. @param {Drawable | Model} what @param {{ frame?: Frame }} [options] */
   show(what, { frame } = {}) {
+    const model = isModel(what);
+    if (!model) expectDrawable(what);
     this.clear();
-    if ('kind' in what) {
+    if (model) {
       const { scene, layers, outline } = /** @type {Model & Parts} */ (what);
       this.#frame = ITSELF;
       this.#first = {};
@@ -109,12 +117,13 @@ class CanvasViewer extends EventTarget {
   /** Replaces a layer, or removes it. The first of all is shown. @param {string} name @param {Drawable | null} what */
   set(name, what) {
     if (!what && !this.#frame) return;
+    if (what) expectDrawable(what);
     const first = this.#stage.layers.size === 0;
     this.#frame ??= frameOf(/** @type {Drawable} */ (what));
     this.#stage.set(name, what, this.#frame);
     if (what && first) {
-      const { up, file, origin } = what;
-      this.#first = { up, file, origin };
+      const { up, seenFromAbove, file, origin } = what;
+      this.#first = { up, seenFromAbove, file, origin };
       this.#orbit.frame(this.#stage.outline, this.upright);
       this.view = name;
     } else this.#orbit.widen(this.#stage.outline);

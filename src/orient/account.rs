@@ -3,6 +3,7 @@
 use crate::orient::Solved;
 use crate::orient::domains::Domains;
 use crate::orient::evidence::SOME;
+use crate::orient::graph::Edge;
 use serde::Serialize;
 
 /// What decides which side of a piece of surface is out.
@@ -77,7 +78,7 @@ pub struct Account {
 const LARGE: f32 = 0.01;
 
 /// What decided for which share of the surface.
-pub(crate) fn of(domains: &Domains, solved: &Solved) -> Account {
+pub(crate) fn of(domains: &Domains, edges: &[Edge], solved: &Solved) -> Account {
     let areas: Vec<f32> = (0..domains.len() as u32).map(|s| domains.area(s)).collect();
     let total: f32 = areas.iter().sum::<f32>().max(f32::MIN_POSITIVE);
     let share = |which: &dyn Fn(usize) -> bool| {
@@ -105,20 +106,22 @@ pub(crate) fn of(domains: &Domains, solved: &Solved) -> Account {
     Account {
         guessed: share(&|s| solved.sources[s] == Source::Guess),
         sources,
-        weakest_tie: weakest_tie(solved, &areas, total),
+        weakest_tie: weakest_tie(solved, edges, &areas, total),
     }
 }
 
 /// [`Account::weakest_tie`].
-fn weakest_tie(solved: &Solved, areas: &[f32], total: f32) -> Option<WeakestTie> {
+fn weakest_tie(solved: &Solved, edges: &[Edge], areas: &[f32], total: f32) -> Option<WeakestTie> {
     let parts = solved.parts.as_ref()?;
     let sums = parts.sums(|s| areas[s as usize]);
     let mut ties = vec![None; parts.count()];
-    for tie in &parts.ties {
-        let sign = |p: u32| solved.signs[parts.members.of(p)[0] as usize];
-        let holds = tie.sum * sign(tie.a) * sign(tie.b);
-        *ties[tie.a as usize].get_or_insert(0.0) += holds;
-        *ties[tie.b as usize].get_or_insert(0.0) += holds;
+    for e in edges {
+        let (p, q) = (parts.of[e.a as usize], parts.of[e.b as usize]);
+        if p != q {
+            let holds = e.weight * solved.signs[e.a as usize] * solved.signs[e.b as usize];
+            *ties[p as usize].get_or_insert(0.0) += holds;
+            *ties[q as usize].get_or_insert(0.0) += holds;
+        }
     }
     let mut weakest: Option<WeakestTie> = None;
     for (p, holds) in (0..).zip(ties) {

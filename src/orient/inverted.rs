@@ -39,10 +39,15 @@ impl Inverted<'_> {
         for s in groups.iter().flatten() {
             seen[*s as usize] = true;
         }
+        // The start of the group that a sub-domain is in.
+        let mut member = vec![u32::MAX; signs.len()];
         for start in all {
             if !seen[start as usize] {
                 let group = self.grown(start, &mut seen, signs);
-                if self.holds(&group, signs) < WEAK * (group.len() as f32).sqrt() {
+                group.iter().for_each(|&s| member[s as usize] = start);
+                if self.holds(&group, |t| member[t as usize] == start, signs)
+                    < WEAK * (group.len() as f32).sqrt()
+                {
                     groups.push(group);
                 }
             }
@@ -70,16 +75,17 @@ impl Inverted<'_> {
     }
 
     /// What turning a group would cost.
-    fn holds(&self, group: &[u32], signs: &[f32]) -> f32 {
-        let mut inside = vec![false; signs.len()];
-        group.iter().for_each(|&s| inside[s as usize] = true);
-        let ends = group.iter().flat_map(|&s| {
-            let around = self.adjacency.of(s).iter();
-            around.map(move |&(e, t)| (e, s, t))
-        });
-        ends.filter(|&(_, _, t)| !inside[t as usize])
-            .map(|(e, s, t)| self.edges[e as usize].weight * signs[s as usize] * signs[t as usize])
-            .sum()
+    fn holds(&self, group: &[u32], is_inside: impl Fn(u32) -> bool, signs: &[f32]) -> f32 {
+        let mut holds = 0.0;
+        for &s in group {
+            for &(e, t) in self.adjacency.of(s) {
+                if !is_inside(t) {
+                    let weight = self.edges[e as usize].weight;
+                    holds += weight * signs[s as usize] * signs[t as usize];
+                }
+            }
+        }
+        holds
     }
 
     /// Turns groups, and leaves those turned for which that mends it: a sheet beside a wrong one has the winding number of

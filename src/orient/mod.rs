@@ -119,7 +119,7 @@ pub fn orient(
         Propagation::Paper => solve.by_front(),
         Propagation::Global => solve.by_energy(evidence, orientation),
     };
-    let account = account::of(&domains, &solved);
+    let account = account::of(&domains, &edges, &solved);
     progress.update(Stage::Orient, 1.0)?;
     Ok(Signs {
         energy: energy(&edges, &solved.signs),
@@ -185,11 +185,11 @@ impl Solve<'_> {
         let mut signs = spanning_signs(domains.len(), self.edges);
         let energy_before = energy(self.edges, &signs);
         descend(self.edges, &vec![0.0; domains.len()], &mut signs);
-        let mut parts = Parts::new(domains, self.edges, &signs);
+        let mut parts = Parts::new(domains, self.edges, &mut signs);
         let known = evidence.weighed(domains, self.edges, (&signs, &parts), orientation);
         if !known.is_empty() {
             descend(self.edges, &known.unary, &mut signs);
-            parts = Parts::new(domains, self.edges, &signs);
+            parts = Parts::new(domains, self.edges, &mut signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
         settle(self.edges, &known.unary, &mut signs);

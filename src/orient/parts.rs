@@ -7,8 +7,9 @@
 
 use crate::base::lists::{Lists, key, pack, ranked, unpack};
 use crate::base::sets::Sets;
+use crate::features::noise::quantile;
 use crate::orient::domains::Domains;
-use crate::orient::graph::{Edge, adjacency};
+use crate::orient::graph::{Adjacency, Edge, adjacency};
 use glam::Vec3;
 
 /// Two pieces, the smaller of n sub-domains, are one part when their tie is more than this times √n. Of 0.4 to 3 on vases,
@@ -38,9 +39,7 @@ const SIDED: [f32; 2] = [0.6, 0.9];
 pub(crate) struct Tie {
     pub(crate) a: u32,
     pub(crate) b: u32,
-    /// Σ w s s over their edges.
-    pub(crate) sum: f32,
-    /// The same as far as it is one-sided.
+    /// Σ w s s over their edges, as far as it is one-sided.
     pub(crate) strength: f32,
 }
 
@@ -55,14 +54,21 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    pub(crate) fn new(domains: &Domains, edges: &[Edge], signs: &[f32]) -> Parts {
-        let ground = Ground {
+    /// From `signs` of little energy. They change where two pieces of one plane, which another stands on, look to different
+    /// sides: then the smaller turns.
+    pub(crate) fn new(domains: &Domains, edges: &[Edge], signs: &mut [f32]) -> Parts {
+        let normals = domains.mean_normals(signs);
+        let mut ground = Ground {
             edges,
             signs,
-            normals: domains.mean_normals(signs),
+            normals,
             centers: domains.centers(),
+            spacing: quantile(domains.sites.spacing.clone(), 2),
         };
-        let mut sets = ground.pieces();
+        let around = adjacency(ground.signs.len(), edges);
+        let flat = ground.flat_pieces(&around);
+        let mut sets = ground.level(&flat, &around);
+        ground.join_smooth(&flat, &mut sets);
         loop {
             let (of, count) = sets.clone().numbered();
             let members = Lists::new(count, || of.iter().copied().zip(0u32..));
@@ -136,27 +142,39 @@ fn joins(ties: &[Tie], members: &Lists<u32>) -> Vec<(u32, u32)> {
 /// What parts are made from.
 struct Ground<'a> {
     edges: &'a [Edge],
-    signs: &'a [f32],
+    signs: &'a mut [f32],
     normals: Vec<Vec3>,
     centers: Vec<Vec3>,
+    spacing: f32,
 }
+
+/// Pieces that are flat.
+struct Flat {
+    /// The piece of every sub-domain, or [`NONE`].
+    of: Vec<u32>,
+    pieces: Vec<Vec<u32>>,
+}
+
+/// In no piece.
+const NONE: u32 = u32::MAX;
 
 impl Ground<'_> {
     fn agreement(&self, e: &Edge) -> f32 {
         e.weight * self.signs[e.a as usize] * self.signs[e.b as usize]
     }
 
-    fn pieces(&self) -> Sets {
+    fn flat_pieces(&self, around: &Adjacency) -> Flat {
         let n = self.signs.len();
-        let around = adjacency(n, self.edges);
-        let mut sets = Sets::new(n);
         let least = SMALL.max(n / LARGE);
-        let mut flat = vec![false; n];
+        let mut flat = Flat {
+            of: vec![NONE; n],
+            pieces: Vec::new(),
+        };
         let mut tried = vec![false; n];
         // The seed from which a sub-domain was reached last.
-        let mut reached = vec![u32::MAX; n];
+        let mut reached = vec![NONE; n];
         for seed in 0..n as u32 {
-            if flat[seed as usize] || tried[seed as usize] {
+            if flat.of[seed as usize] != NONE || tried[seed as usize] {
                 continue;
             }
             let (mut piece, mut sum, mut next) = (vec![seed], self.normals[seed as usize], 0);
@@ -165,7 +183,7 @@ impl Ground<'_> {
                 let mean = sum.normalize_or_zero();
                 for &(e, t) in around.of(piece[next]) {
                     let normal = self.normals[t as usize];
-                    if !flat[t as usize]
+                    if flat.of[t as usize] == NONE
                         && reached[t as usize] != seed
                         && self.agreement(&self.edges[e as usize]) > 0.0
                         && normal.dot(mean) > FLAT
@@ -178,10 +196,9 @@ impl Ground<'_> {
                 next += 1;
             }
             if piece.len() >= least && sum.length() > EVEN * piece.len() as f32 {
-                for &s in &piece {
-                    flat[s as usize] = true;
-                    sets.join(s, seed);
-                }
+                let number = flat.pieces.len() as u32;
+                piece.iter().for_each(|&s| flat.of[s as usize] = number);
+                flat.pieces.push(piece);
             } else {
                 let mean = sum.normalize_or_zero();
                 for &s in &piece {
@@ -189,14 +206,66 @@ impl Ground<'_> {
                 }
             }
         }
-        for e in self.edges {
-            let (a, b) = (e.a as usize, e.b as usize);
-            let is_smooth = self.normals[a].dot(self.normals[b]) > SMOOTH;
-            if !flat[a] && !flat[b] && is_smooth && self.agreement(e) > 0.0 {
-                sets.join(e.a, e.b);
+        flat
+    }
+
+    /// Joins flat pieces of one plane that something stands between, as a vase does on its disc.
+    fn level(&mut self, flat: &Flat, around: &Adjacency) -> Sets {
+        let mut sets = Sets::new(self.signs.len());
+        for piece in &flat.pieces {
+            piece.iter().for_each(|&s| sets.join(s, piece[0]));
+        }
+        let mean = |of: &[Vec3], piece: &[u32]| {
+            let sum: Vec3 = piece.iter().map(|&s| of[s as usize]).sum();
+            sum / piece.len() as f32
+        };
+        let mut between: Vec<u64> = Vec::new();
+        for s in (0..self.signs.len() as u32).filter(|&s| flat.of[s as usize] == NONE) {
+            let pieces = around.of(s).iter().map(|&(_, t)| flat.of[t as usize]);
+            let mut pieces: Vec<u32> = pieces.filter(|&p| p != NONE).collect();
+            pieces.sort_unstable();
+            pieces.dedup();
+            for (k, &p) in pieces.iter().enumerate() {
+                between.extend(pieces[k + 1..].iter().map(|&q| pack(p, q)));
+            }
+        }
+        between.sort_unstable();
+        between.dedup();
+        for (p, q) in between.into_iter().map(unpack) {
+            let [p, q] = [p, q].map(|p| &flat.pieces[p as usize]);
+            let [m, n] = [p, q].map(|piece| mean(&self.normals, piece).normalize_or_zero());
+            let [a, b] = [p, q].map(|piece| mean(&self.centers, piece));
+            let is_level = m.dot(n).abs() > EVEN && (b - a).dot(m).abs() < self.spacing;
+            if is_level && sets.find(p[0]) != sets.find(q[0]) {
+                if m.dot(n) < 0.0 {
+                    let smaller = if p.len() < q.len() { p } else { q };
+                    self.turn_set(sets.find(smaller[0]), &mut sets);
+                }
+                sets.join(p[0], q[0]);
             }
         }
         sets
+    }
+
+    fn turn_set(&mut self, set: u32, sets: &mut Sets) {
+        for s in 0..self.signs.len() {
+            if sets.find(s as u32) == set {
+                self.signs[s] = -self.signs[s];
+                self.normals[s] = -self.normals[s];
+            }
+        }
+    }
+
+    /// Joins what is smooth and not flat.
+    fn join_smooth(&self, flat: &Flat, sets: &mut Sets) {
+        for e in self.edges {
+            let (a, b) = (e.a as usize, e.b as usize);
+            let is_free = flat.of[a] == NONE && flat.of[b] == NONE;
+            let is_smooth = self.normals[a].dot(self.normals[b]) > SMOOTH;
+            if is_free && is_smooth && self.agreement(e) > 0.0 {
+                sets.join(e.a, e.b);
+            }
+        }
     }
 
     /// What ties every two pieces.
@@ -215,16 +284,12 @@ impl Ground<'_> {
             for edges in others.chunk_by(|x, y| unpack(*x).0 == unpack(*y).0) {
                 let b = unpack(edges[0]).0;
                 let edges = || edges.iter().map(|&p| &self.edges[unpack(p).1 as usize]);
-                let sum = edges().map(|e| self.agreement(e)).sum();
+                let sum: f32 = edges().map(|e| self.agreement(e)).sum();
                 let sided = self.sided(edges(), |e| of[e.a as usize] == a);
                 let sided = sided.min(self.sided(edges(), |e| of[e.a as usize] == b));
                 let sure = ((sided - SIDED[0]) / (SIDED[1] - SIDED[0])).clamp(0.0, 1.0);
-                ties.push(Tie {
-                    a,
-                    b,
-                    sum,
-                    strength: sum * sure,
-                });
+                let strength = sum * sure;
+                ties.push(Tie { a, b, strength });
             }
         }
         ties

@@ -24,6 +24,9 @@ const ALONG: f32 = 0.2;
 /// Parts are a group when what ties them is more than this times √ the sub-domains of the smaller.
 const TIED: f32 = 0.5;
 
+/// Mean winding number from which on a group is closed enough: a corner of a room has 0.2.
+const WHOLE: f32 = 0.35;
+
 /// What a part says of its own side.
 #[derive(Debug, Clone, Copy)]
 struct Vote {
@@ -52,40 +55,6 @@ pub(crate) fn turn_parts(
     {
         said.extend(together(domains, parts, signs));
     }
-    if std::env::var("DBG").is_ok() {
-        for p in 0..parts.count() as u32 {
-            let m = parts.members.of(p);
-            if m.len() < 3 {
-                continue;
-            }
-            let c = m
-                .iter()
-                .map(|&s| {
-                    domains.sites.tree.points
-                        [domains.fits.subdomains[s as usize].support[0] as usize]
-                })
-                .sum::<Vec3>()
-                / m.len() as f32;
-            eprintln!(
-                "part {p} n {} at {c:.2} vote {:?} {:.2} shell {:.3}",
-                m.len(),
-                votes[p as usize].source,
-                votes[p as usize].weight,
-                domains.enclosed(m, signs)
-            );
-        }
-        for t in &parts.ties {
-            if parts.members.of(t.a).len().min(parts.members.of(t.b).len()) >= 3 {
-                eprintln!(
-                    "  tie {} {} sum {:.2} strength {:.2}",
-                    t.a, t.b, t.sum, t.strength
-                );
-            }
-        }
-        for (a, b, w) in &said[parts.ties.len()..] {
-            eprintln!("  seen {a} {b} {w:.2}");
-        }
-    }
     let edges: Vec<Edge> = said
         .into_iter()
         .filter(|e| e.2 != 0.0)
@@ -94,14 +63,6 @@ pub(crate) fn turn_parts(
     let unary: Vec<f32> = votes.iter().map(|v| v.weight).collect();
     let mut turned = vec![1.0; parts.count()];
     descend(&edges, &unary, &mut turned);
-    if std::env::var("DBG").is_ok() {
-        for p in 0..parts.count() {
-            if parts.members.of(p as u32).len() > 2 {
-                eprintln!("turned {p} {}", turned[p]);
-            }
-        }
-        eprintln!("sum of votes {}", unary.iter().sum::<f32>());
-    }
     for (&p, sign) in parts.of.iter().zip(signs.iter_mut()) {
         *sign *= turned[p as usize];
     }
@@ -140,7 +101,7 @@ fn ask_groups(domains: &Domains, parts: &Parts, signs: &[f32], votes: &mut [Vote
             .copied()
             .collect();
         let shell = domains.enclosed(&members, &signs) as f32;
-        if shell.abs() > SHELL {
+        if shell.abs() > WHOLE {
             for &p in &group {
                 let weight = (shell / SHELL).clamp(-CLOSED, CLOSED) * size(p).sqrt();
                 votes[p as usize] = Vote {

@@ -264,6 +264,40 @@ test('two share one context; one that is lost is said to be, and comes back', as
   assert.deepEqual(await act(() => told), ['contextlost', 'contextrestored']);
 });
 
+test('what does not fit is an error with a code, and what is shown stays', async () => {
+  const { act, picture, faults } = await open();
+  await act(() => viewer.show(box));
+  const before = await picture();
+  const thrown = await act(async () => {
+    const { createViewer, readGlb } = await import('pointweave/viewer');
+    const taken = document.createElement('canvas');
+    taken.getContext('webgl2');
+    const { positions, indices } = box;
+    const jobs = [
+      () => viewer.show(undefined), () => viewer.show({}), () => viewer.show({ positions: [0, 0, 0] }), () => viewer.set('mesh', { positions, indices: [0, 1, 2] }),
+      () => viewer.show({ positions: new Float32Array() }), () => viewer.show({ positions: positions.slice(1) }),
+      () => viewer.show({ positions, normals: new Float32Array(3) }), () => viewer.set('mesh', { positions, colors: new Uint8Array(96) }),
+      () => viewer.show({ positions, indices: Uint32Array.of(0, 1, 24) }), () => viewer.show({ positions, indices: Uint32Array.of(0, 1) }),
+      () => createViewer(taken), () => createViewer(document.body), () => readGlb(new Uint8Array(40)),
+    ];
+    return Promise.all(jobs.map(async (job) => {
+      try {
+        await job();
+        return 'nothing';
+      } catch ({ name, code, index }) {
+        return `${name} ${code} ${index ?? ''}`.trim();
+      }
+    }));
+  });
+  const codes = [
+    'bad-input', 'bad-input', 'bad-input', 'bad-input', 'empty-cloud', 'bad-length', 'bad-length', 'bad-length', 'bad-index 2', 'bad-length',
+    'bad-input', 'bad-input', 'bad-file',
+  ];
+  assert.deepEqual(thrown, codes.map((code) => `PointweaveError ${code}`));
+  assert.equal(difference(before, await picture()), 0);
+  assert.deepEqual(faults, []);
+});
+
 test('suspended it holds nothing on the GPU, disposed nothing at all', async () => {
   const { act, page, picture } = await open();
   const held = () => act(() => ({ ...window.held }));

@@ -20,7 +20,7 @@ const FLAGS = [
 ];
 
 export const TYPES = {
-  '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm',
+  '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm', '.json': 'application/json',
 };
 
 /** What lies over the picture, hidden for pixel tests. */
@@ -48,16 +48,16 @@ export async function sharedFolder(path) {
 }
 
 /**
- * A browser and a static server for the built page; both end with the test.
+ * A browser and a static server for the built page, or for another in `dist`; both end with the test.
  * @param {import('node:test').TestContext} t
  */
-export async function start(t, { isolated = true } = {}) {
-  assert.ok(existsSync(join(DIST, 'index.html')), 'the page is not built: run `cargo xtask build` first');
+export async function start(t, { isolated = true, dist = DIST } = {}) {
+  assert.ok(existsSync(join(dist, 'index.html')), 'the page is not built: run `cargo xtask build` first');
   const executablePath = CHROMIUM.find((path) => path && existsSync(path));
   assert.ok(executablePath, 'no Chromium found: install it, or set CHROMIUM to its path');
 
   const files = new Map();
-  const server = createServer((request, response) => answer(request, response, files, isolated));
+  const server = createServer((request, response) => answer(request, response, { files, isolated, dist }));
   await new Promise((ready) => server.listen(0, ready));
   const browser = await chromium.launch({ executablePath, args: FLAGS });
   t.after(async () => {
@@ -67,10 +67,10 @@ export async function start(t, { isolated = true } = {}) {
   return new Site(browser, server, files);
 }
 
-async function answer(request, response, files, isolated) {
+async function answer(request, response, { files, isolated, dist }) {
   const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
-  const file = join(DIST, path.endsWith('/') ? `${path}index.html` : path);
-  const body = files.get(path) ?? (file.startsWith(DIST) ? await readFile(file).catch(() => null) : null);
+  const file = join(dist, path.endsWith('/') ? `${path}index.html` : path);
+  const body = files.get(path) ?? (file.startsWith(dist) ? await readFile(file).catch(() => null) : null);
   if (isolated) {
     response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
     response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');

@@ -12,7 +12,7 @@ import { likelyUp } from '../../pkg/viewer/upright.js';
 import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
-import { WORDS } from '../../www/src/results/words.js';
+import { MESSAGES } from '../../www/src/results/error-messages.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
 const BLINDNESS = {
@@ -126,6 +126,7 @@ test('what was surveyed stands on its z, and so does what is flat', () => {
   assert.equal(likelyUp({ file: { format: 'las' } }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ file: { format: 'ply' } }, [24, 29, 36]), 'y');
   assert.equal(likelyUp({ file: { format: 'xyz' }, origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
+  assert.equal(likelyUp({ seenFromAbove: true }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ file: { format: 'las' }, up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
 });
 
@@ -142,6 +143,6 @@ test('every error code of the package has its words', async () => {
   const codes = /type ErrorCode =([^;]*);/.exec(types)[1].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1));
   assert.ok(codes.length >= 12);
   for (const code of codes) {
-    assert.ok(WORDS[code]?.title && WORDS[code].text && WORDS[code].advice, `no words for ${code}`);
+    assert.ok(MESSAGES[code]?.title && MESSAGES[code].text && MESSAGES[code].advice, `no words for ${code}`);
   }
 });

@@ -5,6 +5,7 @@ import { execFile } from 'node:child_process';
 import test from 'node:test';
 import { promisify } from 'node:util';
 import { ISOLATED, OPEN, newPage, serve } from './browser.mjs';
+import { engineBeside } from './installed.mjs';
 
 /** A page whose import map takes the package from another origin, and that origin. */
 async function pageFromCdn(t, { headers = {}, routes = (_cdn) => ({}) } = {}) {
@@ -70,4 +71,13 @@ test('importing touches no global of a browser', async () => {
   const entries = ['index.js', 'direct.js', 'index.node.js', 'direct.node.js'].map((name) => new URL(`../../pkg/${name}`, import.meta.url).href);
   const { stdout } = await promisify(execFile)(process.execPath, ['--input-type=module', '--eval', IMPORT_ON_SERVER, ...entries]);
   assert.deepEqual(JSON.parse(stdout), []);
+});
+
+test('the viewer is imported on a server, where three.js is beside it', async (t) => {
+  const { home } = await engineBeside(t, ['three']);
+  const before = Object.keys(globalThis);
+  const viewer = await import(`${home}viewer.js`);
+  assert.deepEqual(Object.keys(globalThis), before);
+  assert.deepEqual(Object.keys(viewer).sort(), ['PAINTS', 'PAINT_WORDS', 'canPaint', 'colorAt', 'createViewer', 'cssGradient', 'frameOf', 'paintOf', 'readGlb']);
+  assert.ok(viewer.canPaint('density', { cloud: { positions: new Float32Array(3) } }));
 });

@@ -68,7 +68,7 @@ test('onProgress can stop a call, and the instance goes on', async () => {
 test('an instance that broke says so ever after, and another works', async () => {
   const breaking = makeLoad({
     ...platform,
-    loadGlue: async (build) => ({ ...(await platform.loadGlue(build)), panicMessage: () => 'panicked', reduce() { throw new WebAssembly.RuntimeError('unreachable'); } }),
+    loadBindings: async (build) => ({ ...(await platform.loadBindings(build)), panicMessage: () => 'panicked', reduce() { throw new WebAssembly.RuntimeError('unreachable'); } }),
   });
   const core = await breaking();
   assert.match(thrown(() => core.reduce(sphere())).message, /panicked/);

@@ -79,10 +79,10 @@ function dying(trap, panic) {
   let instances = 0;
   return {
     ...platform,
-    async loadGlue(build) {
-      const glue = await platform.loadGlue(build);
-      if (instances++ > 0) return glue;
-      return { ...glue, panicMessage: () => panic, reduce() { throw trap; } };
+    async loadBindings(build) {
+      const bindings = await platform.loadBindings(build);
+      if (instances++ > 0) return bindings;
+      return { ...bindings, panicMessage: () => panic, reduce() { throw trap; } };
     },
   };
 }

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { DEFAULTS, PointweaveError, createEngine, inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
-import { loadGlue } from '../../pkg/engine/wasm-bindings.js';
+import { loadBindings } from '../../pkg/engine/wasm-bindings.js';
 import { rejection, sphere } from './support.mjs';
 
 const cloud = sphere(500);
@@ -98,9 +98,9 @@ test('undefined means not given', async () => {
 
 /** A wasm instance without the checks of the package in front. */
 async function bareWasm() {
-  const glue = await loadGlue('single');
-  await glue.instantiate({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
-  return glue;
+  const bindings = await loadBindings('single');
+  await bindings.instantiate({ module_or_path: await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url)) });
+  return bindings;
 }
 
 test('the defaults are those of Rust', async () => {

@@ -1,7 +1,7 @@
 import { element } from './dom.js';
 
 /** What each wasm module adds to the page. @type {Record<string, string>} */
-const ADDS = { threads: 'threads, which make it faster', las: 'LAS and LAZ files', e57: 'E57 files' };
+const ADDS = { threads: 'threads, which make it faster', las: 'LAS and LAZ files', e57: 'E57 files', pictures: 'pictures of textures', exports: 'more formats to save', packed: 'packed files' };
 
 const EVERY_MS = 2000;
 
@@ -14,7 +14,7 @@ export function showBuilding(missing) {
   const note = element('p', { id: 'building', role: 'status' });
   note.style.cssText = 'position: fixed; inset: auto auto 0 0; margin: 0; padding: 0.3em 0.8em; z-index: 9; background: Canvas; color: CanvasText; font-size: 0.8rem';
   document.body.append(note);
-  const say = (/** @type {string[]} */ names) => (note.textContent = `Still being built: ${names.map((name) => ADDS[name]).join('; ')}.`);
+  const say = (/** @type {string[]} */ names) => (note.textContent = `Still being built: ${names.map((name) => ADDS[name] ?? name).join('; ')}.`);
   say(missing);
   const timer = setInterval(async () => {
     const left = await stillMissing();

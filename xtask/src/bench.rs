@@ -6,13 +6,25 @@ use crate::build;
 use crate::packages;
 use crate::shell::{Result, command, root, run, say};
 
-/// Runs the benchmarks on a fresh build.
+/// Runs the benchmarks: `orient` natively, the others on a fresh build.
 pub fn bench(arguments: &[String]) -> Result<()> {
+    let is_orient = |argument: &&String| *argument == "orient";
+    let (orient, others): (Vec<&String>, Vec<&String>) = arguments.iter().partition(is_orient);
+    if arguments.is_empty() || !others.is_empty() {
+        bench_package(&others)?;
+    }
+    if arguments.is_empty() || !orient.is_empty() {
+        bench_orientation()?;
+    }
+    Ok(())
+}
+
+fn bench_package(arguments: &[&String]) -> Result<()> {
     build::build()?;
     packages::npm(&root().join("tests"))?;
     let mut bench = command("node");
     bench.arg("tests/bench/bench.mjs").args(arguments);
-    let asked = |name| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
+    let asked = |name: &str| arguments.is_empty() || arguments.iter().any(|asked| *asked == name);
     let mut peer = |name, variable: &str, install: fn() -> Result<PathBuf>| {
         if asked(name) {
             match install() {
@@ -26,4 +38,17 @@ pub fn bench(arguments: &[String]) -> Result<()> {
     peer("fcm", "SKFUZZY_PYTHON", packages::skfuzzy);
     peer("surface", "OPEN3D_PYTHON", packages::open3d);
     run(&mut bench, "a benchmark failed; its error is above")
+}
+
+/// Which side is out, beside Open3D.
+fn bench_orientation() -> Result<()> {
+    let mut bench = command("cargo");
+    bench.args(["run", "--release", "--quiet", "--example", "orient_truth", "--"]);
+    match packages::open3d() {
+        Ok(python) => {
+            bench.arg(format!("peer={}", python.display()));
+        }
+        Err(sentence) => say(&format!("{sentence}; `orient` leaves its peer out")),
+    }
+    run(&mut bench, "the benchmark failed; its error is above")
 }

@@ -121,7 +121,12 @@ impl Build {
     /// Whether the finished module is there and no source is newer.
     pub fn is_current(self) -> bool {
         let made = newest(&[self.module()]);
-        made.is_some() && newest(&SOURCES.map(|path| root().join(path))) <= made
+        let sources: Vec<PathBuf> = SOURCES
+            .iter()
+            .chain(&MAKERS)
+            .map(|path| root().join(path))
+            .collect();
+        made.is_some() && newest(&sources) <= made
     }
 
     pub fn target_dir(self) -> PathBuf {
@@ -220,7 +225,9 @@ impl Builder {
             .join(TARGET)
             .join("release/pointweave.wasm");
         let made = build.module();
-        if is_newer(&made, &[&wasm, &self.bindgen, &this_program()?]) {
+        let is_current = is_newer(&made, &[&wasm, &self.bindgen])
+            && newest(&MAKERS.map(|path| root().join(path))) <= newest(std::slice::from_ref(&made));
+        if is_current {
             return touch(&made);
         }
         let part = build.target_dir().join("pkg");
@@ -232,6 +239,12 @@ impl Builder {
 
 /// Where the sources of every build are.
 const SOURCES: [&str; 3] = ["src", "Cargo.toml", "Cargo.lock"];
+/// What says how a module is made of what the compiler wrote.
+const MAKERS: [&str; 3] = [
+    "xtask/src/build.rs",
+    "xtask/src/wasm_bindings.rs",
+    "xtask/src/bin/bindgen.rs",
+];
 
 /// The time of the newest file of these files and folders.
 pub fn newest(paths: &[PathBuf]) -> Option<SystemTime> {
@@ -263,11 +276,6 @@ fn is_newer(made: &Path, from: &[&Path]) -> bool {
     };
     let made = time(made);
     made.is_some() && from.iter().all(|file| time(file) <= made)
-}
-
-fn this_program() -> Result<PathBuf> {
-    std::env::current_exe()
-        .map_err(|error| format!("xtask cannot find itself ({error}); run it by `cargo xtask`"))
 }
 
 /// The JavaScript side, as modules that a page, a worker and Node load alike.

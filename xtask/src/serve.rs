@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::process::{Child, Command};
+use std::time::Instant;
 
 use crate::build::{Build, Builder};
 use crate::options;
@@ -11,16 +12,8 @@ use crate::shell::{Result, command, not_started, root, say};
 use crate::toolchain;
 use crate::tools;
 
-/// The builds that a page needs to show a scan, and those that make it faster or read more formats.
+/// The builds that a page needs to show a scan. The others make it faster, or read and write more formats.
 const FIRST: [Build; 2] = [Build::Single, Build::Files];
-const LATER: [Build; 6] = [
-    Build::Packed,
-    Build::Threads,
-    Build::Las,
-    Build::E57,
-    Build::Pictures,
-    Build::Exports,
-];
 
 /// Builds the package and the page, and serves the page until it is stopped.
 pub fn serve(port: u16) -> Result<()> {
@@ -42,7 +35,7 @@ pub fn serve(port: u16) -> Result<()> {
     }
     options::write()?;
     let builder = Builder::ready()?;
-    let (first, later) = (plan.stale(&FIRST), plan.stale(&LATER));
+    let (first, later) = plan.halves();
     for &build in &first {
         steps.begin(&format!("building wasm, {}", build.name()));
         builder.make(build)?;
@@ -51,7 +44,8 @@ pub fn serve(port: u16) -> Result<()> {
     page::build(&later)?;
     let mut server = start(port)?;
     say(&format!(
-        "the page is at http://localhost:{port}/ until you press Ctrl-C"
+        "the page is at http://localhost:{port}/ until you press Ctrl-C (after {})",
+        steps.elapsed()
     ));
     if let Err(sentence) = finish(&builder, &later, &mut steps) {
         say(&format!("{sentence}; the page goes on without it"));
@@ -76,7 +70,10 @@ fn finish(builder: &Builder, later: &[Build], steps: &mut Steps) -> Result<()> {
     }
     steps.begin("building the page with all of it");
     page::build(&[])?;
-    say("all is built: reload the page");
+    say(&format!(
+        "all is built, after {}: reload the page",
+        steps.elapsed()
+    ));
     Ok(())
 }
 
@@ -120,12 +117,7 @@ const PAGE: f32 = 0.3;
 fn minutes(build: Build) -> f32 {
     match build {
         Build::Single | Build::Threads => 2.5,
-        Build::Files
-        | Build::Las
-        | Build::E57
-        | Build::Packed
-        | Build::Pictures
-        | Build::Exports => 1.0,
+        _ => 1.0,
     }
 }
 
@@ -144,10 +136,10 @@ impl Plan {
         }
     }
 
-    /// Those of `builds` that are not there as they should be.
-    fn stale(&self, builds: &[Build]) -> Vec<Build> {
-        let is_stale = |build: &&Build| self.builds.contains(build);
-        builds.iter().filter(is_stale).copied().collect()
+    /// The builds to make before the page and behind it.
+    fn halves(&self) -> (Vec<Build>, Vec<Build>) {
+        let is_first = |build: &Build| FIRST.contains(build);
+        self.builds.iter().copied().partition(is_first)
     }
 
     /// Steps until the page is served, and after it; each with its minutes.
@@ -159,8 +151,9 @@ impl Plan {
             (self.packages, PACKAGES),
         ];
         first.extend(tools.iter().filter(|tool| tool.0).map(|tool| tool.1));
-        first.extend(self.stale(&FIRST).into_iter().map(minutes));
-        let mut later: Vec<f32> = self.stale(&LATER).into_iter().map(minutes).collect();
+        let (before, behind) = self.halves();
+        first.extend(before.into_iter().map(minutes));
+        let mut later: Vec<f32> = behind.into_iter().map(minutes).collect();
         if !later.is_empty() {
             later.push(PAGE);
         }
@@ -197,6 +190,7 @@ fn about(minutes: f32) -> String {
 struct Steps {
     all: usize,
     begun: usize,
+    start: Instant,
 }
 
 impl Steps {
@@ -205,7 +199,14 @@ impl Steps {
         Self {
             all: first + later,
             begun: 0,
+            start: Instant::now(),
         }
+    }
+
+    /// Minutes and seconds so far.
+    fn elapsed(&self) -> String {
+        let seconds = self.start.elapsed().as_secs();
+        format!("{} min {} s", seconds / 60, seconds % 60)
     }
 
     fn begin(&mut self, what: &str) {
@@ -227,9 +228,8 @@ mod tests {
             builds: Build::ALL.to_vec(),
         };
         let ((first, soon), (later, rest)) = bare.steps();
-        assert_eq!((first, later), (6, 4));
+        assert_eq!((first, later), (6, Build::ALL.len() - FIRST.len() + 1));
         assert!(soon > 0.0 && rest > 0.0);
-        assert_eq!(FIRST.len() + LATER.len(), Build::ALL.len());
     }
 
     #[test]
@@ -242,8 +242,7 @@ mod tests {
         };
         let ((first, _), (later, _)) = ready.steps();
         assert_eq!((first, later), (1, 2));
-        assert_eq!(ready.stale(&FIRST), []);
-        assert_eq!(ready.stale(&LATER), [Build::Las]);
+        assert_eq!(ready.halves(), (vec![], vec![Build::Las]));
         let mut steps = Steps::of(&ready);
         steps.begin("a test");
         assert_eq!((steps.begun, steps.all), (1, 3));

@@ -41,7 +41,7 @@ fn factory(module: &str) -> Result<String> {
     }
     let names = names.join(", ");
     Ok(format!(
-        "// @ts-nocheck\n/** @returns {{any}} */\nexport function makeGlue() {{\n{body}\nreturn {{ instantiate: __wbg_init, {names} }};\n}}\n"
+        "// @ts-nocheck\n/** @returns {{any}} */\nexport function makeBindings() {{\n{body}\nreturn {{ instantiate: __wbg_init, {names} }};\n}}\n"
     ))
 }
 

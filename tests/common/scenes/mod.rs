@@ -11,9 +11,10 @@ use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::octree::Octree;
 use pointweave::{Cloud, Surface, SurfaceParams, reconstruct_owned};
+use std::sync::Arc;
 
 /// Whether a triangle at a place with a unit normal is right side out; `None` where that is not known.
-pub type Truth = Box<dyn Fn(DVec3, DVec3) -> Option<bool> + Send + Sync>;
+pub type Truth = Arc<dyn Fn(DVec3, DVec3) -> Option<bool> + Send + Sync>;
 
 /// What is told of a scan besides its points.
 #[derive(Default)]
@@ -25,8 +26,8 @@ pub struct Told {
     pub above: bool,
 }
 
-/// Of the diagonal: what is farther from all points was not scanned.
-const NEAR: f32 = 0.015;
+/// Spacings, about, from all points beyond which nothing was scanned.
+const NEAR: f32 = 0.8;
 
 /// How sure the outer side is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl Scene {
             points,
             told: Told::default(),
             sure,
-            truth: Box::new(truth),
+            truth: Arc::new(truth),
         }
     }
 
@@ -119,6 +120,8 @@ impl Scene {
     pub fn right(&self, surface: &Surface) -> f64 {
         let scanned = Octree::build(&self.cloud().points);
         let mut nearest = Vec::new();
+        // Of the diagonal, at least a third of a percent: that much smoothing may move a surface.
+        let near = (NEAR / (self.points.len() as f32).sqrt()).max(0.0033);
         let positions = surface.positions_f64();
         let vertices: Vec<DVec3> = positions.chunks_exact(3).map(DVec3::from_slice).collect();
         let (mut right, mut area) = (0.0, 0.0);
@@ -132,7 +135,7 @@ impl Scene {
                 .sum::<Vec3>()
                 / 3.0;
             scanned.knn(center, 1, &mut nearest);
-            if size == 0.0 || nearest[0].distance2 > NEAR * NEAR {
+            if size == 0.0 || nearest[0].distance2 > near * near {
                 continue;
             }
             if let Some(is_right) = (self.truth)((a + b + c) / 3.0, normal / size) {
@@ -141,6 +144,22 @@ impl Scene {
             }
         }
         right / area
+    }
+
+    /// The share of the fitted points whose normal is right.
+    pub fn right_points(&self, surface: &Surface) -> f64 {
+        let cloud = &surface.cloud.reduced.cloud;
+        let normals = cloud.normals.as_deref().unwrap_or_default();
+        let at = |p: Vec3| DVec3::from_array(cloud.frame.to_caller(p));
+        let told = cloud
+            .points
+            .iter()
+            .zip(normals)
+            .filter(|(_, n)| **n != Vec3::ZERO);
+        let is: Vec<bool> = told
+            .filter_map(|(&p, n)| (self.truth)(at(p), n.as_dvec3()))
+            .collect();
+        is.iter().filter(|is| **is).count() as f64 / is.len() as f64
     }
 }
 

@@ -4,6 +4,7 @@ use super::shapes::{boxed, gauss, noisy, range, rectangle, seen};
 use super::{Row, Scene, Sure};
 use glam::DVec3;
 use pointweave::base::rng::Rng;
+use std::sync::Arc;
 
 pub const RECIPES: &[Row] = &[
     ("terrain", "hills", |r| terrain(r, 0.5, Sure::Guess)),
@@ -22,7 +23,7 @@ pub const RECIPES: &[Row] = &[
     ("terrain", "hills seen from below, with normals", |r| {
         let mut scene = terrain(r, 0.8, Sure::Told);
         let normals = vec![-DVec3::Z; scene.points.len()];
-        scene.truth = Box::new(|_, n| Some(n.z < 0.0));
+        scene.truth = Arc::new(|_, n| Some(n.z < 0.0));
         scene.with_normals(normals)
     }),
     ("terrain", "hills over the origin", |r| {
@@ -58,7 +59,7 @@ pub const RECIPES: &[Row] = &[
         let normals = scene.points.iter().map(|&p| inward(p)).collect();
         Scene {
             sure: Sure::Told,
-            truth: Box::new(looks_in),
+            truth: Arc::new(looks_in),
             ..scene.with_normals(normals)
         }
     }),
@@ -71,7 +72,7 @@ pub const RECIPES: &[Row] = &[
     ("room without a pose", "corner", |r| {
         let points = boxed(r, 3000, DVec3::ZERO, DVec3::ONE, &[1, 3, 5]);
         let lift = |_: DVec3, n: DVec3| Some(n.dot(DVec3::ONE) > 0.0);
-        Scene::new(Sure::Told, noisy(r, 0.003, points), lift)
+        Scene::new(Sure::Guess, noisy(r, 0.003, points), lift)
     }),
     ("several setups", "two rooms", two_rooms),
     ("several setups", "street", street),
@@ -210,7 +211,7 @@ fn furnished(r: &mut Rng, mut scene: Scene) -> Scene {
     let hidden: Vec<usize> = (0..4).filter(|&f| hidden[f]).chain([4]).collect();
     let table = boxed(r, 450, lo, hi, &hidden);
     scene.points.extend(noisy(r, 0.008, table));
-    scene.truth = Box::new(move |p, n| {
+    scene.truth = Arc::new(move |p, n| {
         let (a, b) = (lo - 0.08, hi + 0.08);
         if p.cmpgt(a).all() && p.cmplt(b).all() {
             return (p.z > 0.12).then_some(n.dot(p - (lo + hi) / 2.0) > 0.0);

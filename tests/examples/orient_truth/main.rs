@@ -1,6 +1,6 @@
 //! `cargo run --release --example orient_truth [NAME …] [seeds=N] [peer=PYTHON]`
 //!
-//! Which side is out: the share of the surface that is right side out, of generated scans of twelve kinds and of real ones
+//! Which side is out: the shares of the surface and of the fitted points that are right side out, of generated scans of twelve kinds and of real ones
 //! whose outer side is known (those in `../shared/data`, where they are). With `peer`, a Python that has Open3D, the share of
 //! the points that it turns right by itself, and with the place of the camera, stands beside it; it runs
 //! `tests/bench/orient_open3d.py`. Names choose scenes and kinds.
@@ -29,8 +29,8 @@ fn main() -> io::Result<()> {
     }
     let is_asked = |name: &str| names.is_empty() || names.iter().any(|n| name.contains(n.as_str()));
     println!(
-        "{:<62} {:>7} {:>9} {:>8} {:>9} {:>9}  doubts",
-        "scan", "points", "right %", "ms", "tangent %", "camera %"
+        "{:<62} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9}  doubts",
+        "scan", "points", "area %", "points %", "ms", "tangent %", "camera %"
     );
     for recipe in scenes::all() {
         let name = format!("{}: {}", recipe.kind, recipe.name);
@@ -67,9 +67,10 @@ fn row(name: &str, scene: &Scene, peer: &mut Option<Peer>) -> io::Result<()> {
     };
     let doubts: Vec<&str> = report.doubts.iter().map(|d| d.code).collect();
     println!(
-        "{name:<62} {:>7} {:>9.3} {ms:>8.1} {:>9} {:>9}  {}{}",
+        "{name:<62} {:>7} {:>8.3} {:>8.3} {ms:>8.1} {:>9} {:>9}  {}{}",
         scene.points.len(),
         100.0 * right,
+        100.0 * scene.right_points(&surface),
         peers[0],
         peers[1],
         doubts.join(" "),

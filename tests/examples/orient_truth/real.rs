@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3, Vec3};
 use pointweave::cloud::octree::Octree;
 use pointweave::formats::{RawCloud, detect, read};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 type Make = fn() -> Option<Scene>;
 
@@ -89,7 +90,7 @@ fn airborne(name: &str) -> Option<Scene> {
             .map(|&p| (p - first).as_vec3())
             .collect();
         let (near, all) = (Octree::build(&near), Octree::build(&all));
-        scene.truth = Box::new(move |p, n| {
+        scene.truth = Arc::new(move |p, n| {
             let mut found = Vec::new();
             let q = (p - first).as_vec3();
             near.knn(q, 1, &mut found);

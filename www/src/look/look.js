@@ -141,6 +141,7 @@ export class Look {
       { key: '+', also: ['='], shown: '+ −', does: 'Nearer, farther', act: () => viewer?.zoom(1 / 1.2) },
       { key: '-', act: () => viewer?.zoom(1.2) },
       { key: 'Arrows', shown: '← → ↑ ↓', does: 'Turn, while the picture has the focus' },
+      { key: 'Home', does: 'The first look, while the picture has the focus' },
     ];
   }
 

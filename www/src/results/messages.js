@@ -1,5 +1,5 @@
 import { byId } from '../dom.js';
-import { WORDS } from './words.js';
+import { MESSAGES } from './error-messages.js';
 
 /** The card over the picture; it leaves everything else usable. */
 export class MessageCard {
@@ -18,7 +18,7 @@ export class MessageCard {
   /** @param {any} error  @param {string} about  what the person had opened */
   showError(error, about) {
     const code = typeof error?.code === 'string' ? error.code : 'internal';
-    const { title, text, advice } = WORDS[code] ?? WORDS.internal;
+    const { title, text, advice } = MESSAGES[code] ?? MESSAGES.internal;
     byId('message-title', HTMLElement).textContent = title;
     byId('message-text', HTMLElement).textContent = text;
     byId('message-advice', HTMLElement).textContent = advice;

@@ -1,4 +1,4 @@
-/** What went wrong before the engine had anything to do; the codes are in words.js with the engine's. */
+/** What went wrong before the engine had anything to do; the codes are in error-messages.js with the engine's. */
 class FetchError extends Error {
   constructor(/** @type {string} */ code, /** @type {string} */ message) {
     super(message);

@@ -1,4 +1,4 @@
-/** Results as people read them. */
+/** Reports and what is known of a cloud, as text for the terminal. */
 import { sideInWords } from '../engine/side.js';
 import { skippedInWords } from '../files/skipped.js';
 

@@ -2,15 +2,15 @@
  * What a person reads when something went wrong: what happened, in one sentence, and what to do. One entry for each
  * of the package's codes, and for those of fetching.js. The engine's own sentence, with byte or line, is shown below.
  *
- * @typedef {{ title: string, text: string, advice: string }} Words
+ * @typedef {{ title: string, text: string, advice: string }} Message
  */
 
 const READABLE = 'It is none of the kinds of scan that Pointweave reads: PLY, LAS, LAZ, E57, PCD, OBJ, OFF, STL, GLB, or text with x y z on each line.';
 const CONVERT = 'Convert the file to PLY in the program that made it.';
 const DEFECT = 'Try again. If it happens once more, please report the line below.';
 
-/** @type {Record<string, Words>} */
-export const WORDS = {
+/** @type {Record<string, Message>} */
+export const MESSAGES = {
   'empty-cloud': {
     title: 'There are no points in this file',
     text: 'The file can be read, but it holds no points.',
