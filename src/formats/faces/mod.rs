@@ -18,14 +18,19 @@ use super::colors::ColorRange;
 use super::raw_cloud::RawCloud;
 use super::table::{Columns, Table};
 pub use looks::Picture;
+#[cfg(any(feature = "files", feature = "packed"))]
 pub(super) use looks::{Look, Texture, Wrap};
 use normals::CornerNormals;
 use paint::Painter;
 #[cfg(feature = "packed")]
 pub(super) use paint::srgb;
 pub use sampling::Sampling;
+pub(super) use triangles::Faces;
+#[cfg(feature = "packed")]
+pub(super) use triangles::Source;
 pub use triangles::Want;
-pub(super) use triangles::{Face, Faces, NONE, Source};
+#[cfg(any(feature = "files", feature = "packed"))]
+pub(super) use triangles::{Face, NONE};
 use vectors::unit;
 
 /// Fewest and most points that a mesh becomes, and points a triangle between the two.
