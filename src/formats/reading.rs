@@ -353,6 +353,18 @@ impl Reading {
     }
 }
 
+#[cfg_attr(
+    not(any(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )),
+    expect(
+        unreachable_code,
+        reason = "builds of writers and pictures have no reader"
+    )
+)]
 fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
     let faces = || (options.faces == FaceMode::Sample).then(Faces::default);
     Ok(match format {
