@@ -5,8 +5,8 @@
 
 use pointweave::base::error::Error;
 use pointweave::formats::{
-    ColorValues, Format, Output, Positions, RawCloud, Reading, Summary, WriteOptions, detect, read,
-    write,
+    ColorValues, FaceMode, Format, Output, Positions, RawCloud, ReadOptions, Reading, Summary,
+    WriteOptions, detect, read, write,
 };
 use std::path::PathBuf;
 
@@ -329,7 +329,13 @@ struct Collected {
 
 impl Collected {
     fn read(&mut self, bytes: &[u8], size: usize, name: &str) -> Result<Summary, Error> {
-        let mut reading = Reading::new(None, Some(name), bytes.len() as u64);
+        // As `read` does it.
+        let vertices = ReadOptions {
+            faces: FaceMode::Vertices,
+            ..ReadOptions::default()
+        };
+        let mut reading =
+            Reading::new(None, Some(name), bytes.len() as u64).with_options(vertices)?;
         for slice in bytes.chunks(size) {
             reading.push(slice)?;
             self.take(&mut reading);

@@ -97,7 +97,10 @@ fn hostile_clouds_give_manifold_meshes() {
             let s = surface(&positions, &params);
             let flaws = Flaws::of(&s.mesh.vertices, &s.mesh.triangles);
             assert!(flaws.is_clean(), "{name}, {boundary:?}: {flaws:?}");
-            assert!(s.report.triangles <= 9000, "{name}, {boundary:?}");
+            // Caps come on top.
+            if boundary != Boundary::Closed {
+                assert!(s.report.triangles <= 9000, "{name}, {boundary:?}");
+            }
             // Scattered points make folds, not the simplification.
             let lattice = unsimplified(&positions, &params);
             let before = Flaws::of(&lattice.mesh.vertices, &lattice.mesh.triangles);

@@ -6,8 +6,8 @@
 //! A cap is a disc whatever its rim looks like; where that crosses itself in the plane the disc may, too.
 
 use crate::base::lists::{pack, unpack};
-use crate::mesh::Mesh;
 use crate::mesh::disc::Disc;
+use crate::mesh::surface::Mesh;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -68,7 +68,7 @@ pub(crate) fn diameter(mesh: &Mesh, rim: &[u32]) -> f64 {
 
 /// Caps these rims, and returns the share of the area that the caps have.
 pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
-    let before = crate::report::area(&mesh.vertices, &mesh.triangles);
+    let before = crate::mesh::topology::area(&mesh.vertices, &mesh.triangles);
     let mut taken: Vec<u64> = Vec::new();
     let mut on_rim = vec![false; mesh.vertices.len()];
     rims.iter()
@@ -84,7 +84,7 @@ pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
     for rim in rims {
         cap(mesh, rim, &taken);
     }
-    let area = crate::report::area(&mesh.vertices, &mesh.triangles);
+    let area = crate::mesh::topology::area(&mesh.vertices, &mesh.triangles);
     if area > 0.0 { 1.0 - before / area } else { 0.0 }
 }
 
@@ -176,7 +176,7 @@ fn settle(disc: &mut Disc<impl Fn(u32, u32) -> bool>, rim: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{topology, volume};
+    use crate::mesh::topology::{topology, volume};
     use glam::{DVec2, Vec3};
 
     /// A wall of two rows of triangles over an outline, which runs counter-clockwise seen from above; `height` says where its

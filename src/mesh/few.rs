@@ -7,9 +7,9 @@
 
 use crate::base::params::Boundary;
 use crate::fit::cells::Sites;
+use crate::mesh::topology::topology;
 use crate::mesh::{Extracted, Mesh, fill_normals};
 use crate::orient::Signs;
-use crate::report::topology;
 use glam::{DVec2, DVec3, Vec3};
 
 /// Most points that are meshed like this.
@@ -323,7 +323,7 @@ fn peel(triangles: &mut Vec<[u32; 3]>, points: &[DVec3]) {
 mod tests {
     use super::*;
     use crate::base::rng::Rng;
-    use crate::report::{area, volume};
+    use crate::mesh::topology::{area, volume};
 
     fn unit(points: Vec<DVec3>) -> Vec<Vec3> {
         points.into_iter().map(|p| (0.4 * p).as_vec3()).collect()

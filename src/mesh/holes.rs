@@ -11,8 +11,8 @@ use crate::base::sets::Sets;
 use crate::cloud::octree::Octree;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
+use crate::mesh::surface::Hole;
 use crate::mesh::trim::components;
-use crate::report::Hole;
 use glam::{DVec3, Vec3};
 
 /// A component of which more than this share of the closed area would be filled is an open sheet, and has only holes that go

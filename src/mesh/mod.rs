@@ -26,7 +26,8 @@ pub(crate) mod loops;
 pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
-pub(crate) mod surface;
+pub mod surface;
+pub mod topology;
 pub(crate) mod trim;
 
 use crate::base::error::Result;
@@ -36,8 +37,8 @@ use crate::mesh::band::{grow, span};
 use crate::mesh::dual::{Dual, build};
 use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
+use crate::mesh::surface::Hole;
 use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
-use crate::report::Hole;
 use glam::{DVec3, Vec3};
 
 pub use crate::mesh::holes::MOST_FILLED;
