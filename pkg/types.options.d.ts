@@ -146,7 +146,8 @@ export interface ReconstructOptions {
   flip?: boolean;
   /**
    * Which inference chooses the signs of the local functions.
-   * - `'global'` (default): Strongest agreements first over the whole graph, then flips that lower the energy.
+   * - `'global'` (default): The signs of least energy over the whole graph, and every part by what is known of its outer
+   *   side.
    * - `'paper'`: Algorithm 1: an advancing front with belief propagation on local graphs.
    */
   propagation?: 'global' | 'paper';
@@ -161,11 +162,18 @@ export interface ReconstructOptions {
   sharp?: boolean;
   /**
    * What happens where there were no points.
-   * - `'auto'` (default): Small holes are closed, open sheets stay open.
-   * - `'closed'`: The surface closes.
+   * - `'auto'` (default): Holes up to `maxHole` are closed, open sheets stay open.
+   * - `'closed'`: As `'open'`, and every rim is capped by a membrane, which is flat where the rim is.
    * - `'open'`: The surface ends where the points end.
    */
   boundary?: 'auto' | 'closed' | 'open';
+  /**
+   * Widest hole that is closed. With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.
+   * - `'auto'` (default): A tenth of the diagonal; a fifth where the surface goes on smoothly across the hole.
+   * - a number: Fraction of the diagonal. A hole is as wide as the largest disc in it; gaps of the sampling, up to four
+   *   spacings wide, are closed anyway. In [0, 1].
+   */
+  maxHole?: number | 'auto';
   /**
    * Say of every input point and every vertex how far scan and mesh are apart there: {@link SurfaceMesh.distances}. Default
    * `false`.

@@ -29,6 +29,8 @@ export type DoubtCode =
   | 'weak-tie'
   /** The mesh is not close to the points: too few of them, or some lie far from the rest. */
   | 'far-from-points'
+  /** The coordinates were rounded to steps coarser than the points are apart. */
+  | 'steps'
   /** x and y look like degrees and z like metres. */
   | 'degrees-as-lengths';
 
@@ -78,6 +80,8 @@ export interface SurfaceReport extends ReduceReport {
   nonManifoldEdges: number;
   /** One number a closed component. */
   genus: number[];
+  /** Holes that were closed and rims that were left open, the widest first. */
+  holes: Hole[];
   /** How often a sub-domain was split because its fit was not within the accuracy. */
   refinements: number;
   /** Of the fit at the input points. */
@@ -90,6 +94,17 @@ export interface SurfaceReport extends ReduceReport {
   orientationEnergyBefore: number;
   /** What decided which side is out. */
   orientation: OrientationReport;
+}
+
+/** A hole of a surface, or the outer rim of an open one. */
+export interface Hole {
+  /**
+   * Fraction of the diagonal. Of a hole that was closed, the diameter of the largest disc in it; of a rim, that of the disc whose
+   * area it encloses.
+   */
+  diameter: number;
+  /** Whether the surface goes on across it. */
+  closed: boolean;
 }
 
 /** What decided which side is out. Shares are of the surface, 0 to 1. */

@@ -1,7 +1,7 @@
 //! Extraction on functions whose zero set is known, and on some that have none worth the name.
 
 use glam::{DVec3, Vec3};
-use pointweave::base::params::Boundary;
+use pointweave::base::params::{Boundary, MaxHole};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::mesh::{ExtractParams, Extracted, Implicit, extract};
@@ -80,6 +80,7 @@ fn sample(value: &impl Fn(DVec3) -> f64, n: usize) -> Vec<Vec3> {
 const SMOOTH: ExtractParams = ExtractParams {
     resolution: 0.01,
     boundary: Boundary::Auto,
+    max_hole: MaxHole::Auto,
     sharp: false,
     most: None,
 };
@@ -419,6 +420,7 @@ fn noise_is_manifold() {
                 let params = ExtractParams {
                     resolution: h,
                     boundary,
+                    max_hole: MaxHole::Auto,
                     sharp,
                     most,
                 };
@@ -551,7 +553,7 @@ fn a_closed_surface_has_no_boundary() {
 
 #[test]
 fn auto_closes_small_holes_and_leaves_large_ones() {
-    let small = cut_ball(-0.2, Boundary::Auto);
+    let small = cut_ball(-0.285, Boundary::Auto);
     assert_eq!(
         (
             small.topology.boundary_edges,
@@ -561,16 +563,60 @@ fn auto_closes_small_holes_and_leaves_large_ones() {
         (0, 1, 0)
     );
     assert!(
-        small.out.filled > 0.05 && small.out.filled < 0.2,
+        small.out.filled > 0.002 && small.out.filled < 0.1,
         "{}",
         small.out.filled
     );
-    let large = cut_ball(0.15, Boundary::Auto);
-    assert_eq!(
-        (large.out.closed, large.out.open, large.out.filled),
-        (0, 1, 0.0)
+    let [hole] = small.out.holes[..] else {
+        panic!("{:?}", small.out.holes)
+    };
+    let wide = 2.0 * (0.3f64 * 0.3 - 0.285 * 0.285).sqrt();
+    assert!(
+        hole.closed && (hole.diameter / wide - 1.0).abs() < 0.15,
+        "{hole:?}"
     );
-    assert_eq!(large.out.mesh, cut_ball(0.15, Boundary::Open).out.mesh);
+    // What a hole takes away of the ball does not count, only how wide it is.
+    for z in [-0.2, 0.15] {
+        let large = cut_ball(z, Boundary::Auto);
+        assert_eq!(
+            (large.out.closed, large.out.open, large.out.filled),
+            (0, 1, 0.0)
+        );
+        assert_eq!(large.out.mesh, cut_ball(z, Boundary::Open).out.mesh);
+        let [rim] = large.out.holes[..] else {
+            panic!("{:?}", large.out.holes)
+        };
+        let wide = 2.0 * (0.09 - z * z).sqrt();
+        assert!(
+            !rim.closed && (rim.diameter / wide - 1.0).abs() < 0.15,
+            "{rim:?}"
+        );
+    }
+}
+
+#[test]
+fn a_closed_surface_is_the_open_one_and_caps() {
+    for z in [-0.2, 0.0, 0.15] {
+        let [open, closed] =
+            [Boundary::Open, Boundary::Closed].map(|boundary| cut_ball(z, boundary).out.mesh);
+        let (vertices, triangles) = (open.vertices.len(), open.triangles.len());
+        assert_eq!(closed.vertices[..vertices], open.vertices);
+        assert_eq!(closed.normals[..vertices], open.normals);
+        assert_eq!(closed.triangles[..triangles], open.triangles);
+        // The rim is flat but for its steps, and so is the lid.
+        let lid = &closed.vertices[vertices..];
+        assert!(
+            !lid.is_empty() && lid.len() < vertices / 10,
+            "{}",
+            lid.len()
+        );
+        let heights = || lid.iter().map(|v| f64::from(v.z));
+        let (lo, hi) = (
+            heights().fold(1.0, f64::min),
+            heights().fold(-1.0, f64::max),
+        );
+        assert!(hi - lo < 0.02 && (lo - z + 0.02).abs() < 0.025, "{lo} {hi}");
+    }
 }
 
 /// `Auto` decides for each component: of a whole ball and a bowl only the bowl stays open.
@@ -605,9 +651,9 @@ fn auto_decides_for_each_component() {
     assert!(r.area() > whole + 0.3 * whole && r.area() < whole + 0.5 * whole);
 }
 
-/// A field that calls everything inside still gives a closed surface: the hull of the lattice.
+/// Caps know rims only, whatever the field says beyond them: the lid of a flat sheet lies on it.
 #[test]
-fn closing_is_bounded_by_the_lattice() {
+fn a_flat_sheet_closes_to_both_of_its_sides() {
     let value = |x: DVec3| x.z;
     let points: Vec<Vec3> = (0..400)
         .map(|i| Vec3::new((i % 20) as f32 * 0.01, (i / 20) as f32 * 0.01, 0.0))
@@ -618,16 +664,12 @@ fn closing_is_bounded_by_the_lattice() {
         covered,
         global: |_| -1.0,
     };
-    let r = check(
-        &field,
-        &points,
-        ExtractParams {
-            boundary: Boundary::Closed,
-            ..SMOOTH
-        },
-    );
-    assert_eq!(r.topology.boundary_edges, 0);
-    assert!(r.volume() > 0.0);
+    let with = |boundary| check(&field, &points, ExtractParams { boundary, ..SMOOTH });
+    let [open, closed] = [Boundary::Open, Boundary::Closed].map(with);
+    assert!(open.topology.boundary_edges > 0);
+    assert_eq!(closed.topology.boundary_edges, 0);
+    assert!((closed.area() / open.area() - 2.0).abs() < 0.02);
+    assert!(closed.volume().abs() < 1e-5);
 }
 
 #[test]

@@ -4,11 +4,12 @@ mod common;
 
 use common::scenes::{Recipe, Scene, Sure, Told, all};
 use glam::{DQuat, DVec3};
-use pointweave::base::params::Orientation;
+use pointweave::base::params::{Orientation, Target};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::Viewpoints;
 use pointweave::report::Source;
+use pointweave::samples::{Model, sample};
 use pointweave::{Cloud, ReduceParams, Surface, SurfaceParams, reconstruct, reduce};
 use std::sync::Arc;
 
@@ -285,4 +286,28 @@ fn viewpoints_and_up_are_checked() {
         code(cloud().with_up([0.0, f64::INFINITY, 0.0])),
         "bad-option"
     );
+}
+
+#[test]
+fn scans_of_closed_objects_are_not_doubted() {
+    let sizes = [(1_500, 1.0), (3_000, 0.2), (10_000, 0.3), (36_000, 0.1)];
+    let mut doubted = Vec::new();
+    for model in Model::ALL {
+        for (count, ratio) in sizes {
+            let scan = sample(model, count, 1);
+            let cloud = Cloud::from_f32(&scan.positions).unwrap();
+            let params = SurfaceParams {
+                reduce: Some(ReduceParams {
+                    target: Target::Ratio(ratio),
+                    ..ReduceParams::default()
+                }),
+                ..SurfaceParams::default()
+            };
+            let surface = reconstruct(&cloud, &params, &mut Silent).unwrap();
+            if !surface.report.reduce.doubts.is_empty() {
+                doubted.push((model, count, surface.report.reduce.doubts));
+            }
+        }
+    }
+    assert!(doubted.is_empty(), "{doubted:#?}");
 }

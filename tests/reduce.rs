@@ -147,6 +147,7 @@ fn tiny_and_degenerate_clouds_are_reduced_too() {
     for points in clouds {
         let cloud = cloud_of(&points);
         let n = points.len();
+        let places = distinct(&cloud.points);
         for method in [Method::Adaptive, Method::Paper] {
             for placement in [
                 Placement::Implicit,
@@ -163,7 +164,8 @@ fn tiny_and_degenerate_clouds_are_reduced_too() {
                             ..count(c)
                         },
                     );
-                    assert_eq!(r.cloud.len(), c);
+                    // All points are kept with their copies; fewer are at places of their own.
+                    assert_eq!(r.cloud.len(), if c == n { n } else { c.min(places) });
                 }
             }
             for target in [Target::Tolerance(1e-3), Target::Flatness(3e-4)] {
@@ -178,6 +180,65 @@ fn tiny_and_degenerate_clouds_are_reduced_too() {
             }
         }
     }
+}
+
+/// How many places some points are at.
+fn distinct(points: &[Vec3]) -> usize {
+    let mut places: Vec<[u32; 3]> = points
+        .iter()
+        .map(|p| p.to_array().map(f32::to_bits))
+        .collect();
+    places.sort_unstable();
+    places.dedup();
+    places.len()
+}
+
+#[test]
+fn copies_are_one_place_that_stands_for_all_of_them() {
+    let once = shape(Shape::Torus, 150, 0.0);
+    let hundred: Vec<Vec3> = (0..15_000).map(|i| once.points[i % 150]).collect();
+    let positions: Vec<f64> = hundred
+        .iter()
+        .flat_map(|p| p.as_dvec3().to_array())
+        .collect();
+    let value: Vec<f32> = (0..15_000).map(|i| (i / 150) as f32).collect();
+    let cloud = Cloud::from_f64(&positions)
+        .unwrap()
+        .with_attribute("run", &value)
+        .unwrap();
+    for target in [Target::Ratio(1.0 / 3.0), Target::Count(14_999)] {
+        for method in [Method::Adaptive, Method::Paper] {
+            let params = ReduceParams {
+                target,
+                method,
+                assignment: true,
+                ..Default::default()
+            };
+            let r = run(&cloud, &params);
+            assert_eq!((r.cloud.len(), distinct(&r.cloud.points)), (150, 150));
+            assert!(r.reason.contains("150 places"), "{}", r.reason);
+            assert!(r.weights.iter().all(|&w| w == 100.0));
+            // The copies differ in their scalar: the mean is that of all of them.
+            assert!(
+                r.cloud.attributes[0]
+                    .values
+                    .iter()
+                    .all(|&v| (v - 49.5).abs() < 1e-3)
+            );
+            let assignment = r.assignment.unwrap();
+            assert!((0..15_000).all(|i| assignment[i] == assignment[i % 150]));
+            for (&nearest, p) in r.nearest.iter().zip(&r.cloud.points) {
+                assert_eq!(cloud.points[nearest as usize], *p);
+            }
+        }
+    }
+    // As many as are asked for where there are places enough.
+    let r = run(&cloud, &count(40));
+    assert_eq!((r.cloud.len(), distinct(&r.cloud.points)), (40, 40));
+    assert_eq!(
+        (r.weights.iter().sum::<f32>(), r.reason.as_str()),
+        (15_000.0, "")
+    );
 }
 
 #[test]

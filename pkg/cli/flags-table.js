@@ -29,4 +29,5 @@ export const FLAGS = {
   resolution: 'edge length of the mesh, a share of the diagonal',
   sharp: 'keep creases',
   boundary: 'close the surface, or let it end where points do',
+  maxHole: 'widest hole that is closed, a share of the diagonal',
 };

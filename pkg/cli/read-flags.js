@@ -3,7 +3,7 @@ import { TABLES } from '../engine/options.js';
 import { parseValue } from './flags.js';
 import { UsageError } from './usage.js';
 
-/** @typedef {{ columns?: string[], delimiter?: string, decimal?: '.' | ',', skip?: number, sentinels?: string }} ReadSaid */
+/** @typedef {{ columns?: string[], delimiter?: string, decimal?: '.' | ',', skip?: number, sentinels?: 'drop' | 'keep' }} ReadSaid */
 
 /** How `parseArgs` is told of them. */
 export const READ_FLAGS = /** @type {const} */ ({

@@ -39,6 +39,7 @@ export const RECONSTRUCT = {
   resolution: number(0.0001, 0.25, { or: 'auto', fallback: 'auto' }),
   sharp: toggle(true),
   boundary: choice('auto', 'closed', 'open'),
+  maxHole: number(0, 1, { or: 'auto', fallback: 'auto' }),
   distances: toggle(false),
   keep: toggle(false),
 };

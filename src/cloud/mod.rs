@@ -104,6 +104,12 @@ impl Frame {
     }
 }
 
+/// Whether the unit frame's box has room for a point: it leaves out the few that are far from all others, which are no part
+/// of a surface, nor of what is measured of one.
+pub(crate) fn in_frame(p: Vec3) -> bool {
+    p.abs().max_element() <= 1.0
+}
+
 /// One scalar a point: intensity, classification, time …
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attribute {

@@ -13,6 +13,7 @@ pub(crate) mod filter;
 pub(crate) mod noise;
 pub mod outliers;
 pub(crate) mod planes;
+pub(crate) mod steps;
 pub(crate) mod values;
 
 use crate::base::error::Result;
@@ -56,12 +57,14 @@ impl Features {
             variation: spread(&one.variation),
             residual: spread(&one.residual),
             noise: one.noise,
+            steps: one.steps,
         })
     }
 
     fn measure_distinct(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
         let cells = tree.cut(|node| node.range().len() <= CELL);
-        let scales = Scales::measure(tree);
+        let steps = steps::noise(tree);
+        let scales = Scales::measure(tree).at_least(steps);
         let mut part = Part::new(progress, 0.0..0.4);
         let n = tree.points.len();
         let planes: Vec<Plane> = par::flat_map_progress(
@@ -79,9 +82,10 @@ impl Features {
             variation: planes.iter().map(|p| p.variation).collect(),
             residual: Vec::new(),
             noise: scales.noise,
+            steps,
         };
         drop(planes);
-        features.noise = noise::within_sheets(tree, &features.normals, &scales);
+        features.noise = noise::within_sheets(tree, &features.normals, &scales).max(steps);
         let (early, late) = (0.4..0.7, 0.7..1.0);
         features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
             sums.normals(denoise)

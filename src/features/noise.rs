@@ -44,6 +44,8 @@ pub(crate) struct Scales {
     pub(crate) filter: f32,
     /// Its standard deviation, in the unit frame.
     pub(crate) noise: f32,
+    /// Of the points, in the unit frame.
+    pub(crate) spacing: f32,
     /// 0: leave points where they are, 1: move them onto the surface.
     pub(crate) denoise: f32,
 }
@@ -60,8 +62,17 @@ impl Scales {
             plane: (16.0 + 24.0 * relative + 66.0 * relative * relative).min(224.0) as usize,
             filter: (12.0 + 80.0 * relative).min(256.0),
             noise,
+            spacing,
             denoise: ramp.clamp(0.0, 1.0),
         }
+    }
+
+    /// For noise of at least so much, with the same spacing.
+    pub(crate) fn at_least(self, noise: f32) -> Scales {
+        if noise <= self.noise {
+            return self;
+        }
+        Scales::new(noise, self.spacing)
     }
 
     /// Measures the noise of a cloud.

@@ -20,6 +20,9 @@ pub struct Features {
     pub residual: Vec<f32>,
     /// Estimated standard deviation of the noise across the surface.
     pub noise: f32,
+    /// The part of it that comes from rounded coordinates ([`crate::features::steps`]), which a reduction does not average
+    /// away; 0 where they were not rounded.
+    pub steps: f32,
 }
 
 impl Features {

@@ -19,6 +19,9 @@ use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
 use crate::cloud::{Crs, Unit};
 
+/// Whether any format that is compiled in has faces; the modules for LAS and E57 files leave the sampling out by this.
+const HAVE_FACES: bool = cfg!(any(feature = "files", feature = "packed"));
+
 /// So many bytes, or the whole file, are looked at to tell its format.
 const HEAD: usize = 1 << 16;
 
@@ -138,26 +141,29 @@ impl Reading {
 
     /// What the faces need besides the file, one after the other; [`Reading::give_file`] or [`Reading::give_picture`] answers.
     pub fn want(&self) -> Option<Want> {
-        self.faces.as_ref().and_then(Faces::want)
+        self.faces
+            .as_ref()
+            .filter(|_| HAVE_FACES)
+            .and_then(Faces::want)
     }
 
     /// The content of the file that is wanted; `None` where there is none: what it would have said is then left out.
     pub fn give_file(&mut self, content: Option<&[u8]>) {
-        if let Some(faces) = &mut self.faces {
+        if let Some(faces) = self.faces.as_mut().filter(|_| HAVE_FACES) {
             faces.give_file(content);
         }
     }
 
     /// The pixels of the picture that is wanted; `None` where it is of no kind that is read.
     pub fn give_picture(&mut self, picture: Option<Picture>) {
-        if let Some(faces) = &mut self.faces {
+        if let Some(faces) = self.faces.as_mut().filter(|_| HAVE_FACES) {
             faces.give_picture(picture);
         }
     }
 
     /// Puts points of the faces in the place of the vertices.
     fn sample(&mut self) {
-        let Some(faces) = self.faces.take() else {
+        let Some(faces) = self.faces.take().filter(|_| HAVE_FACES) else {
             return;
         };
         let Some(mut vertices) = self.table.take() else {
@@ -323,7 +329,7 @@ impl Reading {
         if self.done {
             self.faces = parser
                 .take_faces()
-                .filter(|faces| !faces.corners.is_empty());
+                .filter(|faces| HAVE_FACES && !faces.corners.is_empty());
         }
         self.place = input.place;
         Ok(if self.done {
@@ -348,6 +354,18 @@ impl Reading {
     }
 }
 
+#[cfg_attr(
+    not(any(
+        feature = "e57",
+        feature = "files",
+        feature = "las",
+        feature = "packed"
+    )),
+    expect(
+        unreachable_code,
+        reason = "builds of writers and pictures have no reader"
+    )
+)]
 fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
     let faces = || (options.faces == FaceMode::Sample).then(Faces::default);
     Ok(match format {

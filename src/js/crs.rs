@@ -19,6 +19,7 @@ extern "C" {
     fn ascii(this: &PointCrs) -> Option<String>;
 }
 
+#[cfg(any(feature = "engine", feature = "exports"))]
 impl PointCrs {
     pub(crate) fn read(&self) -> Crs {
         Crs {

@@ -4,7 +4,7 @@
 //!    corner of least value, at most [`WALKS`] times.
 //! 2. A crossed cell asks for its neighbours across every face with a sign change, until none is missing. So whatever
 //!    sheet is met is followed to its end, and the field is evaluated hardly anywhere else.
-//! 3. Cells with a corner that no fitted function reaches wait. Where holes are to be closed they come next, with the
+//! 3. Cells with a corner that no fitted function reaches wait. Where holes may be closed they come next, with the
 //!    global values at those corners, and the walk goes on until the surface is closed: the hull of the lattice is
 //!    outside. A whole brick away from what is fitted the global value is smooth: it is asked for at 27 of 512 vertices.
 
@@ -86,11 +86,8 @@ pub(crate) fn grow<F: Implicit>(
     while !band.pending.is_empty() {
         band.advance(&mut report)?;
     }
-    if boundary != Boundary::Open {
-        let most = match boundary {
-            Boundary::Auto => band.crossed + (MOST_FILLED_CELLS * band.crossed as f64) as usize,
-            _ => usize::MAX,
-        };
+    if boundary == Boundary::Auto {
+        let most = band.crossed + (MOST_FILLED_CELLS * band.crossed as f64) as usize;
         band.closing = true;
         band.pending = band
             .waiting

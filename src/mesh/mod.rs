@@ -2,36 +2,46 @@
 //!
 //! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
-//! 3. `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends (see [`extract`]).
+//! 3. `holes`, `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends
+//!    (see [`extract`]).
 //! 4. `simplify`: fewer triangles where the surface is flat.
+//! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//!
+//! Of [`few`] points the mesh is made without a field.
 //!
 //! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
 
 pub mod attach;
 pub(crate) mod band;
+pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
+pub(crate) mod disc;
 pub(crate) mod dual;
+pub(crate) mod few;
 pub mod field;
+pub mod holes;
 pub(crate) mod lattice;
 pub(crate) mod loops;
 pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
 pub(crate) mod surface;
+pub mod topology;
 pub(crate) mod trim;
 
 use crate::base::error::Result;
-use crate::base::params::Boundary;
+use crate::base::params::{Boundary, MaxHole};
 use crate::base::progress::Progress;
 use crate::mesh::band::{grow, span};
 use crate::mesh::dual::{Dual, build};
+use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
-use crate::mesh::trim::{Holes, decide_holes, drop_phantoms, split_bow_ties, trim_rims};
+use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
+pub use crate::mesh::holes::{Hole, MOST_FILLED};
 pub use crate::mesh::surface::{Implicit, Mesh};
-pub use crate::mesh::trim::MOST_FILLED;
 
 /// Options of [`extract`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +50,8 @@ pub struct ExtractParams {
     pub resolution: f64,
     /// What happens where no fitted function reaches.
     pub boundary: Boundary,
+    /// Widest hole that [`Boundary::Auto`] closes.
+    pub max_hole: MaxHole,
     /// Put vertices on creases and corners of the zero set.
     pub sharp: bool,
     /// Edges are collapsed where the surface is flat until no more triangles are left than this, as far as the mesh
@@ -58,6 +70,8 @@ pub struct Extracted {
     pub closed: usize,
     /// Components that were left open.
     pub open: usize,
+    /// Holes that were closed and rims that were left open, the widest first.
+    pub holes: Vec<Hole>,
 }
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
@@ -69,11 +83,10 @@ pub struct Extracted {
 /// Where no fitted function reaches,
 /// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
 ///   in a cell with an unreached corner;
-/// - `Closed`: unreached corners take [`Implicit::global`]; the mesh has no boundary edge, the lattice's hull being
-///   outside;
-/// - `Auto`: like `Closed`, then each connected component gives up what was closed by global values, and stays open, if
-///   that is more than [`MOST_FILLED`] of its area. Closing stops once it takes more cells than the rest of the
-///   surface; components not closed by then stay open.
+/// - `Closed`: like `Open`, and then each rim is capped by a membrane, which is flat where the rim is; nothing else moves;
+/// - `Auto`: unreached corners take [`Implicit::global`], then each cap for itself stays or goes, by how far it is from the
+///   points and how it turns ([`holes`]). Closing stops once it takes more cells than the rest of the surface; components
+///   not closed by then stay open.
 ///
 /// A component that no fitted function reaches at all is none, nor is one that is the nearest to fewer than 16 points, nor a
 /// small piece that runs along a larger component within two spacings.
@@ -102,7 +115,8 @@ pub fn extract<F: Implicit>(
         filled,
         closed,
         open,
-    } = decide_holes(&mut dual, params.boundary);
+        mut holes,
+    } = decide_holes(&mut dual, params.boundary, (points, reach), params.max_hole);
     trim_rims(&mut dual, points, reach);
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points, reach);
@@ -117,12 +131,41 @@ pub fn extract<F: Implicit>(
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
     }
     span(1.0)?;
+    let mut extracted = Extracted::of(mesh, params.boundary);
+    holes.extend(std::mem::take(&mut extracted.holes));
+    holes.sort_by(|a, b| b.diameter.total_cmp(&a.diameter));
+    let closes = params.boundary == Boundary::Closed;
     Ok(Extracted {
-        mesh,
-        filled,
-        closed,
-        open,
+        filled: filled + extracted.filled,
+        closed: if closes { open } else { closed },
+        open: if closes { 0 } else { open },
+        holes,
+        ..extracted
     })
+}
+
+impl Extracted {
+    /// A mesh with its rims, which are capped where it has to be closed.
+    pub(crate) fn of(mut mesh: Mesh, boundary: Boundary) -> Extracted {
+        let rims = caps::rims(&mesh);
+        let closed = boundary == Boundary::Closed;
+        let hole = |rim: &caps::Rim| Hole {
+            diameter: caps::diameter(&mesh, rim),
+            closed,
+        };
+        let holes = rims.iter().map(hole).collect();
+        let filled = if closed {
+            caps::close(&mut mesh, &rims)
+        } else {
+            0.0
+        };
+        Extracted {
+            mesh,
+            filled,
+            holes,
+            ..Default::default()
+        }
+    }
 }
 
 /// A mesh, and which of its vertices are on creases, and at an end of the surface.

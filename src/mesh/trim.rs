@@ -1,20 +1,15 @@
-//! What is kept of the dual mesh: holes closed or not, no sheets that no point supports, one fan around each vertex.
+//! What is kept of the dual mesh: no sheets that no point supports, one fan around each vertex.
 //!
 //! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
 
 use crate::base::lists::{Lists, key, of_key, pack, unpack};
 use crate::base::par;
-use crate::base::params::Boundary;
 use crate::base::sets::Sets;
 use crate::cloud::octree::Octree;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
 use crate::orient::SMALLEST;
 use glam::Vec3;
-
-/// [`Boundary::Auto`] keeps what closes a component as long as it is at most this share of the closed component's area.
-/// A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile 0.5 or more.
-pub const MOST_FILLED: f64 = 0.35;
 
 /// An open surface ends within this share of a point's reach of it. Reaches are some 2.2 spacings, so that is 1.3, and what
 /// the rim is smoothed by stays within 1.5.
@@ -33,68 +28,8 @@ const LAYER: f32 = 0.9;
 /// Points that one index of a parallel map takes.
 const POINTS_PER_TASK: usize = 1024;
 
-/// A component with what a decision about it rests on.
-#[derive(Clone, Default)]
-struct Component {
-    area: f64,
-    filled: f64,
-    has_boundary: bool,
-}
-
-/// What [`decide_holes`] left.
-#[derive(Debug, Default)]
-pub(crate) struct Holes {
-    /// Share of the area that is filled (0-1).
-    pub(crate) filled: f64,
-    /// Components whose holes were closed.
-    pub(crate) closed: usize,
-    /// Components that are open.
-    pub(crate) open: usize,
-}
-
-/// Drops the filled quads of the components that are better left open, and components that are nothing but filling.
-pub(crate) fn decide_holes(dual: &mut Dual, boundary: Boundary) -> Holes {
-    let (of, components) = measure(dual);
-    let (mut holes, mut area, mut filled) = (Holes::default(), 0.0, 0.0);
-    let stays_closed: Vec<bool> = components
-        .iter()
-        .map(|c| {
-            let is_unclosed = c.has_boundary || c.filled > MOST_FILLED * c.area;
-            let stays_closed = c.filled < c.area && !(boundary == Boundary::Auto && is_unclosed);
-            if c.filled < c.area {
-                let kept = if stays_closed { c.filled } else { 0.0 };
-                filled += kept;
-                area += c.area - c.filled + kept;
-                let is_open = c.has_boundary || kept < c.filled;
-                holes.open += usize::from(is_open);
-                holes.closed += usize::from(kept > 0.0 && !is_open);
-            }
-            stays_closed
-        })
-        .collect();
-    dual.retain(|quad| !quad.filled || stays_closed[of[quad.vertices[0] as usize] as usize]);
-    holes.filled = if area > 0.0 { filled / area } else { 0.0 };
-    holes
-}
-
-/// The component of every vertex, and what is to be known of each.
-fn measure(dual: &Dual) -> (Vec<u32>, Vec<Component>) {
-    let (of, count) = components(dual);
-    let mut components = vec![Component::default(); count];
-    for quad in &dual.quads {
-        let component = &mut components[of[quad.vertices[0] as usize] as usize];
-        let area = quad_area(quad, &dual.vertices);
-        component.area += area;
-        component.filled += if quad.filled { area } else { 0.0 };
-    }
-    for (vertex, &c) in dual.vertices.iter().zip(&of) {
-        components[c as usize].has_boundary |= vertex.is_at_end();
-    }
-    (of, components)
-}
-
 /// The number of every vertex's connected component, and how many there are; a vertex without quads is one of its own.
-fn components(dual: &Dual) -> (Vec<u32>, usize) {
+pub(crate) fn components(dual: &Dual) -> (Vec<u32>, usize) {
     let mut sets = Sets::new(dual.vertices.len());
     for quad in &dual.quads {
         quad.vertices[1..]
@@ -102,13 +37,6 @@ fn components(dual: &Dual) -> (Vec<u32>, usize) {
             .for_each(|&v| sets.join(quad.vertices[0], v));
     }
     sets.numbered()
-}
-
-fn quad_area(quad: &Quad, vertices: &[Vertex]) -> f64 {
-    let [p, q, r, s] = quad
-        .vertices
-        .map(|v| vertices[v as usize].position.as_dvec3());
-    ((q - p).cross(r - p).length() + (r - p).cross(s - p).length()) / 2.0
 }
 
 /// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps

@@ -39,7 +39,8 @@ pub struct Account {
     pub sources: Vec<SourceShare>,
     /// Share of the surface (0-1) whose side is a guess.
     pub guessed: f64,
-    /// Of the parts that are tied to others and have over 1 % of the surface, and that no normal or viewpoint decided.
+    /// Of the parts that are tied to others and have over 1 % of the surface, that no normal or viewpoint decided, and at
+    /// which the whole encloses nothing.
     pub weakest_tie: Option<WeakestTie>,
 }
 
@@ -81,7 +82,7 @@ pub(crate) fn of(domains: &Domains, edges: &[Edge], solved: &Solved) -> Account 
 
 /// [`Account::weakest_tie`].
 fn weakest_tie(solved: &Solved, edges: &[Edge], areas: &[f32], total: f32) -> Option<WeakestTie> {
-    let parts = solved.parts.as_ref()?;
+    let (parts, enclosing) = solved.parts.as_ref()?;
     let sums = parts.sums(|s| areas[s as usize]);
     let mut ties = vec![None; parts.count()];
     for e in edges {
@@ -96,7 +97,8 @@ fn weakest_tie(solved: &Solved, edges: &[Edge], areas: &[f32], total: f32) -> Op
     for (p, holds) in (0..).zip(ties) {
         let members = parts.members.of(p);
         let source = solved.sources[members[0] as usize];
-        let is_known = !matches!(source, Source::Shell | Source::Up | Source::Guess);
+        let is_known =
+            enclosing[p as usize] || !matches!(source, Source::Shell | Source::Up | Source::Guess);
         // What would turn is the part, or all but the part where that is less.
         let area = sums[p as usize].min(total - sums[p as usize]);
         let count = members.len().min(solved.signs.len() - members.len());

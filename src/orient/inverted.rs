@@ -19,8 +19,8 @@ pub(crate) struct Inverted<'a> {
 
 impl Inverted<'_> {
     /// Turns whole parts, and connected groups that little ties to their part: a cut through a part costs more than any
-    /// region that is really inside out.
-    pub(crate) fn turn(&self, parts: &Parts, signs: &mut [f32]) {
+    /// region that is really inside out. Gives the winding number of the whole at every sub-domain as it is then.
+    pub(crate) fn turn(&self, parts: &Parts, signs: &mut [f32]) -> Vec<f64> {
         let all: Vec<u32> = (0..signs.len() as u32).collect();
         let around = self.domains.winding(&all, signs);
         let is_inverted = |part: &&[u32]| {
@@ -41,7 +41,7 @@ impl Inverted<'_> {
         }
         // The start of the group that a sub-domain is in.
         let mut member = vec![u32::MAX; signs.len()];
-        for start in all {
+        for &start in &all {
             if !seen[start as usize] {
                 let group = self.grown(start, &mut seen, signs);
                 group.iter().for_each(|&s| member[s as usize] = start);
@@ -52,7 +52,11 @@ impl Inverted<'_> {
                 }
             }
         }
+        if groups.is_empty() {
+            return around;
+        }
         self.turn_those_that_mend(&groups, signs);
+        self.domains.winding(&all, signs)
     }
 
     /// Those that agree with `start` and with each other, of what is not yet seen.
@@ -91,9 +95,6 @@ impl Inverted<'_> {
     /// Turns groups, and leaves those turned for which that mends it: a sheet beside a wrong one has the winding number of
     /// an inverted one, turned or not.
     fn turn_those_that_mend(&self, groups: &[Vec<u32>], signs: &mut [f32]) {
-        if groups.is_empty() {
-            return;
-        }
         let turn = |group: &[u32], signs: &mut [f32]| {
             group
                 .iter()

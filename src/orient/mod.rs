@@ -91,6 +91,9 @@ impl Signs {
 pub const SMALLEST: usize = 16;
 /// Mean winding number over a component's own sites from which on it is closed.
 const CLOSED: f64 = 0.35;
+/// Mean winding number of the whole at a part from which on the whole encloses something there: half way from what says
+/// nothing, 0, to what a closed surface has.
+const ENCLOSING: f64 = 0.25;
 
 /// Infers the signs; with `sites.oriented` every sign is +1 already.
 pub fn orient(
@@ -187,14 +190,24 @@ impl Solve<'_> {
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
         settle(self.edges, &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
-        Inverted {
+        let around = Inverted {
             domains,
             edges: self.edges,
             adjacency: self.adjacency,
             is_known: known.values.iter().map(|&x| x != 0.0).collect(),
         }
         .turn(&parts, &mut signs);
-        let mut sources: Vec<Source> = parts.of.iter().map(|&p| by_part[p as usize]).collect();
+        let enclosing = parts.sums(|s| around[s as usize] as f32);
+        let enclosing: Vec<bool> = enclosing
+            .iter()
+            .zip(parts.members.iter())
+            .map(|(sum, part)| f64::from(*sum) > ENCLOSING * part.len() as f64)
+            .collect();
+        let source = |&p: &u32| match by_part[p as usize] {
+            Source::Up | Source::Guess if enclosing[p as usize] => Source::Shell,
+            source => source,
+        };
+        let mut sources: Vec<Source> = parts.of.iter().map(source).collect();
         for (source, known) in sources.iter_mut().zip(&known.sources) {
             if *known != Source::Guess {
                 *source = *known;
@@ -208,7 +221,7 @@ impl Solve<'_> {
             energy_before,
             sources,
             said: known.said,
-            parts: Some(parts),
+            parts: Some((parts, enclosing)),
         }
     }
 

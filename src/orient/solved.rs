@@ -11,5 +11,6 @@ pub(crate) struct Solved {
     pub(crate) sources: Vec<Source>,
     /// What sources said of each.
     pub(crate) said: Vec<(Source, Vec<f32>)>,
-    pub(crate) parts: Option<Parts>,
+    /// The parts, and whether the whole surface encloses something at each: its winding number there is near ½.
+    pub(crate) parts: Option<(Parts, Vec<bool>)>,
 }

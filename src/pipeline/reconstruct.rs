@@ -11,14 +11,15 @@ use crate::features::noise::quantile;
 use crate::fit;
 use crate::fit::cells::{self, Sites};
 use crate::mesh::attach::attach;
+use crate::mesh::few;
 use crate::mesh::field::Field;
-use crate::mesh::{ExtractParams, extract};
+use crate::mesh::{ExtractParams, Extracted, extract};
 use crate::orient;
 use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::memory::Memory;
-use crate::pipeline::reduce::reduce_report;
+use crate::pipeline::reduce::{near_stats, reduce_report};
 use crate::pipeline::results::{Distances, ReducedCloud, Surface};
-use crate::pipeline::sites::{Reduction, points_to_fit, sites};
+use crate::pipeline::sites::{Noise, Reduction, points_to_fit, sites};
 use crate::report::distance::{mesh_distances, vertex_distances};
 use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
 use glam::Vec3;
@@ -94,7 +95,7 @@ fn reconstruct_cloud(
         origin,
     } = input;
     check_extent(&features)?;
-    let noise = features.noise;
+    let noise = Noise::of(&features);
     let reduce = || points_to_fit(&cloud, &tree, features.into_owned(), params, &mut clock);
     let fitted = match remembered {
         Some(last) => last.of(&params.reduce, reduce)?,
@@ -110,14 +111,14 @@ struct Measured<'a> {
     points: Cow<'a, [Vec3]>,
     /// Where each point is in the cloud; empty where nobody asks.
     order: Cow<'a, [u32]>,
-    noise: f32,
+    noise: Noise,
     origin: Origin,
 }
 
 impl<'a> Measured<'a> {
     fn new(
         tree: Cow<'a, Octree>,
-        noise: f32,
+        noise: Noise,
         origin: Origin,
         params: &SurfaceParams,
     ) -> Measured<'a> {
@@ -153,7 +154,7 @@ fn surface(
     let subdomains = cells::divide(&sites, &mut clock)?;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
     let input_of = (&input[..], stands_for);
-    let fits = fit::fit(subdomains, &sites, input_of, noise, params, &mut clock)?;
+    let fits = fit::fit(subdomains, &sites, input_of, noise.all, params, &mut clock)?;
     reduced.shares = Vec::new();
     if fits.functions.is_empty() {
         let found = "no neighbourhood of the points spans a surface".into();
@@ -162,15 +163,22 @@ fn surface(
     let evidence = evidence.at_sites(&site_of, sites.tree.points.len());
     let rules = (params.orientation, params.propagation);
     let mut signs = orient::orient(&fits, &sites, &evidence, rules, &mut clock)?;
+    let few = few::mesh(&sites.tree.points);
     // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
-    let inward = signs.look_inward(&sites);
+    let inward = few.is_none() && signs.look_inward(&sites);
     if inward {
         signs.invert();
     }
-    let field = Field::new(&fits, &signs, &sites);
-    let how = extract_params(&sites, params);
-    let mut mesh = extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?.mesh;
-    drop(field);
+    let Extracted {
+        mut mesh, holes, ..
+    } = match few {
+        Some(few) => few.placed((&sites, &mut signs), (params.orient, params.boundary)),
+        None => {
+            let field = Field::new(&fits, &signs, &sites);
+            let how = extract_params(&sites, params);
+            extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
+        }
+    };
     if inward {
         signs.invert();
     }
@@ -196,7 +204,7 @@ fn surface(
         &carried.unwrap_or_default(),
     );
     let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
-    let distance = DistanceStats::of(apart.iter().map(|a| a.distance));
+    let distance = near_stats(&input, apart.iter().map(|a| a.distance));
     let distances = params.distances.then(|| {
         let mut points = vec![f32::NAN; origin.given];
         for (&i, apart) in order.iter().zip(&apart) {
@@ -227,6 +235,7 @@ fn surface(
         boundary_edges: topology.boundary_edges,
         non_manifold_edges: topology.non_manifold_edges,
         genus: topology.genus,
+        holes,
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
         beyond_accuracy: beyond as f64 / input.len() as f64,
@@ -316,6 +325,7 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
     ExtractParams {
         resolution,
         boundary: params.boundary,
+        max_hole: params.max_hole,
         sharp: params.sharp,
         most: (params.resolution == Resolution::Auto).then(|| TRIANGLES * sites.tree.points.len()),
     }

@@ -5,14 +5,16 @@ use crate::base::error::Result;
 use crate::base::par;
 use crate::base::params::ReduceParams;
 use crate::base::progress::Progress;
-use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
+use crate::cloud::{Cloud, in_frame};
 use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::results::ReducedCloud;
+use crate::pipeline::sites::Noise;
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::{self, Reduced};
 use crate::report;
 use crate::report::{DistanceStats, ReduceReport};
+use glam::Vec3;
 use std::borrow::Cow;
 
 /// Reduces a cloud (section 3).
@@ -55,22 +57,28 @@ fn reduce_cloud(
         features,
         origin,
     } = Input::new(cloud, params.outliers, &mut clock)?;
-    let noise = features.noise;
+    let noise = Noise::of(&features);
     let mut reduced = reduce::reduce(&cloud, &tree, features.into_owned(), params, &mut clock)?;
     drop(cloud);
     let points = tree.into_owned().into_points();
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
     let distances = cloud_distances(|k| points[k], &reduced.shares, &patches, &mut clock)?;
-    let distance = DistanceStats::of(distances.into_iter().map(f64::from));
+    let distance = near_stats(&points, distances.into_iter().map(f64::from));
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
     Ok(ReducedCloud { reduced, report })
 }
 
+/// Statistics of the distances of `points`, without those that are far from all others: one stray would be all that they tell.
+pub(crate) fn near_stats(points: &[Vec3], distances: impl Iterator<Item = f64>) -> DistanceStats {
+    let each = points.iter().zip(distances);
+    DistanceStats::of(each.filter(|(p, _)| in_frame(**p)).map(|(_, d)| d))
+}
+
 /// What a reduction did, alone or before a surface.
 pub(crate) fn reduce_report(
-    (origin, noise): (&Origin, f32),
+    (origin, noise): (&Origin, Noise),
     reduced: &Reduced,
     distance: DistanceStats,
     clock: &Clock,
@@ -84,7 +92,7 @@ pub(crate) fn reduce_report(
         objective: reduced.stats.objective,
         validity: reduced.stats.validity,
         evenness: reduced.stats.evenness,
-        noise: noise as f64,
+        noise: noise.all.into(),
         sharp_points: reduced.stats.kept,
         distance,
         ms: clock.times.clone(),
@@ -103,7 +111,11 @@ pub(crate) fn reduce_report(
             .filter(|reason| !reason.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
-        doubts: report::doubts_of_faces(reduced.cloud.faces),
+        doubts: [
+            report::doubts_of_faces(reduced.cloud.faces),
+            report::doubts_of_steps(noise.steps),
+        ]
+        .concat(),
         ..Default::default()
     }
 }

@@ -3,9 +3,9 @@
 use crate::base::error::Result;
 use crate::base::params::{ReduceParams, SurfaceParams, Target};
 use crate::base::progress::Progress;
-use crate::cloud::Cloud;
 use crate::cloud::copies::copies;
 use crate::cloud::octree::Octree;
+use crate::cloud::{Cloud, in_frame};
 use crate::features::Features;
 use crate::features::noise::Scales;
 use crate::fit::cells::Sites;
@@ -15,6 +15,9 @@ use glam::Vec3;
 
 /// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
 const MIN_REDUCED: usize = 64;
+
+/// Points of one terrace are off by the same, so that their mean is, too: noise of steps counts so many times.
+const TERRACE: f32 = 2.0;
 
 /// The reduced cloud, where its points are for the fit, and what is known of their outer side.
 pub(crate) type Reduction = (Reduced, Vec<Vec3>, Evidence);
@@ -67,18 +70,35 @@ fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
     Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
 }
 
+/// What is known of the input's noise: standard deviations across the surface, in the unit frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Noise {
+    pub(crate) all: f32,
+    /// See [`Features::steps`].
+    pub(crate) steps: f32,
+}
+
+impl Noise {
+    pub(crate) fn of(features: &Features) -> Noise {
+        Noise {
+            all: features.noise,
+            steps: features.steps,
+        }
+    }
+}
+
 /// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for
 /// the area of all.
 pub(crate) fn sites(
     reduced: &Reduced,
     positions: &[Vec3],
-    input_noise: f32,
+    input: Noise,
     orient: bool,
     progress: &mut dyn Progress,
 ) -> Result<(Sites, Vec<Option<u32>>)> {
     // Points that the unit frame leaves out are no part of a surface.
     let framed: Vec<u32> = (0..positions.len() as u32)
-        .filter(|&i| positions[i as usize].abs().max_element() <= 1.0)
+        .filter(|&i| in_frame(positions[i as usize]))
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);
@@ -100,7 +120,10 @@ pub(crate) fn sites(
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
-    let noise = Scales::measure(&tree).noise.min(input_noise);
+    let noise = Scales::measure(&tree)
+        .noise
+        .min(input.all)
+        .max(TERRACE * input.steps);
     let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
     Ok((sites, site_of))
 }

@@ -8,8 +8,10 @@ pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
 pub mod paper;
+pub(crate) mod places;
 pub mod placement;
 pub mod shares;
+mod stats;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
 
@@ -30,8 +32,12 @@ use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::placement::{Members, Placed};
+use crate::reduce::places::Places;
 use crate::reduce::shares::{SHARES, Shares};
+use crate::reduce::stats::stats;
 use crate::reduce::surroundings::Around;
+
+pub use crate::reduce::stats::ReduceStats;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
 #[derive(Debug, Clone)]
@@ -60,25 +66,9 @@ pub struct Reduced {
     pub reason: String,
 }
 
-/// Figures of one reduction.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ReduceStats {
-    /// Sub-domains.
-    pub cells: usize,
-    /// Sweeps of steps (b) and (c); the most that any sub-domain took.
-    pub iterations: usize,
-    /// J of eq. 1, Σ u^m |x - v|² over the nearest centres, in squared diagonals.
-    pub objective: f64,
-    /// Validity index χ of eq. 7; 0 with fewer than two centres or with coincident ones.
-    pub validity: f64,
-    /// Coefficient of variation of (distance of a reduced point to its nearest / wanted spacing); 0 is perfectly even.
-    pub evenness: f64,
-    /// Input points that were kept as they are (the paper's "typical data with sharp feature").
-    pub kept: usize,
-}
-
 /// Reduces a cloud of at least one point, whose positions are taken from its `tree`. Features are freed as soon as nothing
-/// asks for them any more.
+/// asks for them any more. Copies of a point are one place, which is reduced once and stands for all of them; only a target
+/// that is all points keeps the copies.
 ///
 /// # Errors
 /// [`crate::Error::BadOption`], [`crate::Error::Cancelled`].
@@ -91,8 +81,16 @@ pub fn reduce(
 ) -> Result<Reduced> {
     params.validate()?;
     let power = Fuzzifier::new(params.fuzzifier(params.method));
+    let given = tree.points.len();
+    let all = params.target.count(given) == Some(given);
+    let places = if all { None } else { Places::of(tree) };
+    let (at, features) = match &places {
+        Some(places) => (&places.tree, places.features(&features)),
+        None => (tree, features),
+    };
     let mut job = Job {
-        tree,
+        tree: at,
+        given,
         features,
         params,
     };
@@ -110,35 +108,43 @@ pub fn reduce(
     let members = Members::new(&clustering.shares, clustering.centers.len());
     let mut placed = job.place(&clustering, &arrangement, &members, plan);
     drop(job);
-    let stats = stats(tree, &clustering, &arrangement.around, power);
+    let stats = stats(at, &clustering, &arrangement.around, power);
     drop((arrangement, clustering.spacing));
     progress.update(Stage::Place, 0.5)?;
     let nearest = if plan.placement == Placement::Sample {
-        placement::snap(tree, &members, &mut placed)
+        placement::snap(at, &members, &mut placed)
     } else {
         par::map(
             placed.len(),
             || (),
-            |i, ()| placement::nearest(tree, &members, i, placed[i].position),
+            |i, ()| placement::nearest(at, &members, i, placed[i].position),
         )
     };
-    let reduced = placement::carry(cloud, tree, &members, &placed, &nearest, &params.attributes);
+    let cells = params.cells.then(|| {
+        let ranges = clustering.cells.iter();
+        ranges
+            .map(|range| corners(&at.points[range.clone()]))
+            .collect()
+    });
+    // From here on about the points, copies too.
+    let point = |&k: &u32| places.as_ref().map_or(k, |places| places.point(k));
+    let nearest: Vec<u32> = nearest.iter().map(point).collect();
+    let spread = places.as_ref().map(|p| p.spread(&clustering.shares));
+    let of_copies = spread.as_ref().map(|s| Members::new(s, placed.len()));
+    let members = of_copies.as_ref().unwrap_or(&members);
+    let reduced = placement::carry(cloud, tree, members, &placed, &nearest, &params.attributes);
+    drop(of_copies);
+    let shares = spread.unwrap_or(clustering.shares);
     let mut weights = vec![0.0; placed.len()];
-    for s in &clustering.shares {
+    for s in &shares {
         weights[s.center[0] as usize] += 1.0;
     }
     let assignment = params.assignment.then(|| {
         let mut assignment = vec![0; tree.points.len()];
-        for (s, &i) in clustering.shares.iter().zip(&tree.order) {
+        for (s, &i) in shares.iter().zip(&tree.order) {
             assignment[i as usize] = s.center[0];
         }
         assignment
-    });
-    let cells = params.cells.then(|| {
-        let ranges = clustering.cells.iter();
-        ranges
-            .map(|range| corners(&tree.points[range.clone()]))
-            .collect()
     });
     progress.update(Stage::Place, 1.0)?;
     Ok(Reduced {
@@ -149,7 +155,7 @@ pub fn reduce(
         nearest: nearest.iter().map(|&k| tree.order[k as usize]).collect(),
         assignment,
         cells,
-        shares: clustering.shares,
+        shares,
         stats,
         reason,
     })
@@ -182,7 +188,10 @@ struct Plan {
 
 /// What a reduction works on.
 struct Job<'a> {
+    /// Of the places.
     tree: &'a Octree,
+    /// Points, with all copies.
+    given: usize,
     features: Features,
     params: &'a ReduceParams,
 }
@@ -201,7 +210,15 @@ impl Job<'_> {
             let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
             return Ok((self.within(tolerance, progress)?, reason));
         }
-        let count = self.params.target.count(self.tree.points.len());
+        let places = self.tree.points.len();
+        let asked = self.params.target.count(self.given);
+        let count = asked.map(|count| count.min(places));
+        let reason = match asked {
+            Some(asked) if asked > places => {
+                format!("the points are at {places} places: each is kept once")
+            }
+            _ => String::new(),
+        };
         let goal = match (count, self.params.method) {
             (None, _) => Goal::Flatness,
             (Some(count), Method::Paper) => Goal::Count(count),
@@ -211,7 +228,7 @@ impl Job<'_> {
                 Goal::Density(count, density)
             }
         };
-        Ok((goal, String::new()))
+        Ok((goal, reason))
     }
 
     /// Looks for the fewest points that keep the surface within a tolerance.
@@ -250,6 +267,7 @@ impl Job<'_> {
             tree,
             features,
             params,
+            ..
         } = self;
         match goal {
             Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {
@@ -372,55 +390,4 @@ fn adaptive(
         kept: 0,
     };
     Ok((clustering, clusters.index))
-}
-
-fn stats(
-    tree: &Octree,
-    clustering: &Clustering,
-    around: &[Around],
-    power: Fuzzifier,
-) -> ReduceStats {
-    let centers = &clustering.centers;
-    let mut objective = 0.0;
-    for (p, s) in tree.points.iter().zip(&clustering.shares) {
-        for (i, u) in s.used() {
-            objective +=
-                power.raise(f64::from(u)) * f64::from(p.distance_squared(centers[i as usize]));
-        }
-    }
-    let mut wanted = vec![(0.0, 0u32); centers.len()];
-    for (s, &h) in clustering.shares.iter().zip(&clustering.spacing) {
-        let (sum, n) = &mut wanted[s.center[0] as usize];
-        *sum += f64::from(h);
-        *n += 1;
-    }
-    let apart = || around.iter().map(|a| f64::from(a.apart2));
-    let relative = apart()
-        .zip(&wanted)
-        .filter(|&(apart2, &(sum, _))| sum > 0.0 && apart2.is_finite())
-        .map(|(apart2, &(sum, n))| apart2.sqrt() * f64::from(n) / sum);
-    let separation = apart().fold(f64::INFINITY, f64::min);
-    ReduceStats {
-        cells: clustering.cells.len(),
-        iterations: clustering.iterations,
-        objective,
-        validity: if centers.len() > 1 && separation > 0.0 {
-            objective / (centers.len() as f64 * separation)
-        } else {
-            0.0
-        },
-        evenness: coefficient_of_variation(&relative.collect::<Vec<f64>>()),
-        kept: clustering.kept,
-    }
-}
-
-fn coefficient_of_variation(values: &[f64]) -> f64 {
-    let n = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n;
-    if mean > 0.0 {
-        variance.sqrt() / mean
-    } else {
-        0.0
-    }
 }

@@ -58,6 +58,21 @@ pub(crate) fn doubts_of_shape(low: [f64; 3], high: [f64; 3], rms: f64) -> Vec<Do
     Vec::new()
 }
 
+/// What is to be said of coordinates that were rounded: `steps` is the standard deviation of that (fraction of the diagonal).
+pub(crate) fn doubts_of_steps(steps: f32) -> Vec<Doubt> {
+    if steps == 0.0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "steps",
+        message: format!(
+            "The coordinates were rounded to steps of {:.2} % of the diagonal: detail as fine as that is smoothed away.",
+            100.0 * steps * 12f32.sqrt()
+        ),
+        share: None,
+    }]
+}
+
 /// What is to be said of points that were taken from `faces`, where they were.
 pub(crate) fn doubts_of_faces(faces: u64) -> Vec<Doubt> {
     if faces == 0 {

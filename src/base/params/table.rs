@@ -156,11 +156,20 @@ table! {
         Edge,
     }
 
+    /// Widest hole that is closed.
+    auto MaxHole {
+        /// A tenth of the diagonal; a fifth where the surface goes on smoothly across the hole.
+        Auto "auto",
+        /// Fraction of the diagonal. A hole is as wide as the largest disc in it; gaps of the sampling, up to four spacings
+        /// wide, are closed anyway.
+        Diameter,
+    }
+
     /// What happens where there were no points.
     choice Boundary {
-        /// Small holes are closed, open sheets stay open.
+        /// Holes up to `max_hole` are closed, open sheets stay open.
         Auto "auto" "Close small ones",
-        /// The surface closes.
+        /// As `open`, and every rim is capped by a membrane, which is flat where the rim is.
         Closed "closed" "Close all",
         /// The surface ends where the points end.
         Open "open" "Leave open",
@@ -219,6 +228,9 @@ table! {
             field("Keep creases sharp", "Edges and corners stay; without it they are rounded.");
         choice boundary: Boundary = Boundary::Auto, flag("close the surface, or let it end where points do"),
             field("Holes", "What happens where nothing was scanned.");
+        /// With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.
+        number max_hole: MaxHole = MaxHole::Auto, range(auto or from 0 to 1),
+            flag("widest hole that is closed, a share of the diagonal");
         /// Say of every input point and every vertex how far scan and mesh are apart there: `SurfaceMesh.distances`.
         switch distances: bool = false;
         /// Remember what was measured of this cloud, and its reduction: the next call with `keep` does not do again what would
