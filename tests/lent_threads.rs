@@ -2,7 +2,8 @@
 //! would make it.
 #![cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 
-use pointweave::{par, pool};
+use pointweave::base::pool;
+use pointweave::par;
 
 #[test]
 fn lent_threads_become_the_pool() {
