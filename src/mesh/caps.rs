@@ -5,7 +5,7 @@
 //!
 //! A cap is a disc whatever its rim looks like; where that crosses itself in the plane the disc may, too.
 
-use crate::base::lists::{pack, unpack};
+use crate::base::sort_keys::{pack, unpack};
 use crate::mesh::disc::Disc;
 use crate::mesh::surface::Mesh;
 use crate::mesh::topology::area;

@@ -5,9 +5,9 @@
 //! *turn*, the angle between the cap and the surface around it: a hole in a smooth part has the cap go on as the surface
 //! does, the open end of a pipe has it across.
 
-use crate::base::lists::pack;
 use crate::base::params::{Boundary, MaxHole};
 use crate::base::sets::Sets;
+use crate::base::sort_keys::pack;
 use crate::cloud::octree::Octree;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
