@@ -5,17 +5,17 @@
 //!
 //! ```text
 //! caller's arrays
-//!   └ cloud     length and finiteness checked, unit frame
-//!     └ octree    Morton order, neighbour queries
-//!       └ features  spacing, unoriented normal, curvature, surface variation, noise
-//!         ├ outliers    isolated points, which may be dropped before all else
-//!         └ fcm, reduce   section 3: fuzzy c-means centres stand for the points   ──► reduced cloud
-//!           └ cells, fit    section 4.1: one local implicit function a sub-domain (eq. 9-11)
-//!             └ orient        section 4.2: which side is out (Algorithm 1)
-//!               └ field         partition of unity joins the local functions
-//!                 └ extract       manifold iso-surface                            ──► mesh
-//!                   └ report        what was lost, measured
+//!   └ cloud       checked, unit frame, Morton order                 section 3, sub-domains
+//!     └ features    spacing, normal, curvature, variation, noise      (given, in the paper)
+//!       └ reduce      fuzzy c-means centres stand for the points      section 3, eq. 1-8        ──► reduced cloud
+//!         └ fit         a local implicit function a sub-domain        section 4.1, eq. 9-11
+//!           └ orient      which side is out                           section 4.2, Algorithm 1
+//!             └ mesh        partition of unity, manifold iso-surface  section 4.2, "stitch"      ──► mesh
+//!               └ report      what was lost, measured                 section 5                 ──► report
 //! ```
+//!
+//! [`pipeline`] calls them in this order. Each is a folder (a *wing*) whose `mod.rs` says what the stage does, step by step; all
+//! stand on [`base`]. A wing imports only those above it, no two files import each other, and a test holds both.
 //!
 //! **Frame.** Inside, positions are `f32` in the *unit frame*: bounding box centred at the origin, diagonal 1.
 //! Every tolerance is a fraction of that diagonal. The caller's frame is restored once, at exit.

@@ -1,4 +1,15 @@
-//! The caller's arrays become a [`Cloud`]: checked, and in the unit frame.
+//! The caller's arrays become a [`Cloud`]: checked, in the unit frame, and in an order in which neighbours are near.
+//!
+//! 1. [`Cloud`] checks lengths and finiteness and moves positions to the unit frame (`f32`, bounding box centred at the
+//!    origin, diagonal 1); [`Frame`] takes them back.
+//! 2. [`octree::Octree`] puts the points in Morton order ([`morton`]) and cuts them into cells: the paper's sub-domains
+//!    (section 3) and the index of all neighbour queries ([`queries`]).
+//! 3. [`neighborhood`] asks for the neighbours of a whole cell of points at once.
+//!
+//! **In**: `x y z …` in the caller's frame and unit, `f32` or `f64`; per-point colours, normals, scalars; where and how it was
+//! seen. **Out**: the same in the unit frame, in the caller's order; the tree has its own order and says which point is which.
+//!
+//! **Cost**: linear for the cloud, n log n for the tree; a query takes about log n + k steps for k neighbours.
 
 pub(crate) mod copies;
 mod crs;

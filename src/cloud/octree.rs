@@ -5,8 +5,8 @@
 //! into one octant make no node. Points that share all 21 bits an axis are cut in the middle of their longest side, copies by
 //! index, so neither costs more than others.
 
-use crate::base::lists::{key, sort_by_key};
 use crate::base::par;
+use crate::base::sort_keys::{key, sort_by_key};
 use crate::cloud::morton::{MAX_DEPTH, morton};
 use glam::Vec3;
 use std::ops::Range;

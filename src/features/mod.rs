@@ -1,13 +1,22 @@
-//! What the points say of the surface around them: spacing, unoriented normal, curvature, surface variation, noise.
+//! Per-point estimates of the local surface: spacing, unoriented normal, curvature, variation, noise ([`Features`]).
+//! The paper takes normals as given (section 4.2 only aligns them); these are estimated, so that noise does not look like detail.
 //!
-//! 1. Quadrics through some of the points measure the noise, and with it how many neighbours to ask ([`crate::features::noise`]).
-//!    Planes through the neighbours of every point give its normal, variation and spacing ([`crate::features::planes`]).
-//! 2. Normals are averaged over a support that grows with the noise, over neighbours whose normals agree (a bilateral
-//!    filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases become
-//!    sharp and stay so. How fast the averaged normals turn is the curvature.
-//! 3. Each point's distance to the surface is the mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on
-//!    every quadric, with a third of the variance that fitting one would have, and blind to the far side of a crease.
-//!    By that distance noisy points are moved.
+//! 1. `noise`: quadrics through the neighbours of a sample of the points measure the noise, and with it how many neighbours
+//!    to ask.
+//! 2. `planes`: a plane through the neighbours of every point gives its normal, variation and spacing.
+//! 3. `filter`, first pass: normals are averaged over a support that grows with the noise, over neighbours whose normals agree
+//!    (a bilateral filter: Jones, Durand, Desbrun, "Non-iterative, feature-preserving mesh smoothing", 2003), so that creases
+//!    become sharp and stay so.
+//! 4. `filter`, second pass: how fast the averaged normals turn is the curvature. Each point's distance to the surface is the
+//!    mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on every quadric, with a third of the variance that
+//!    fitting one would have, and blind to the far side of a crease. By that distance noisy points are moved.
+//!
+//! [`outliers`] finds isolated points, where the caller wants them dropped; the features of the others are then measured again.
+//!
+//! **In**: an octree, unit frame. **Out**: [`Features`] in the octree's order; lengths in the unit frame, curvature in its
+//! inverse, normals of unit length and arbitrary sign.
+//!
+//! **Cost**: one plane and two filter sums for each point, n log n in all.
 
 pub(crate) mod filter;
 pub(crate) mod noise;

@@ -8,9 +8,9 @@
 
 use crate::base::error::Result;
 use crate::base::kernel::dipoles;
-use crate::base::lists::{key, pack, unpack};
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
+use crate::base::sort_keys::{key, pack, unpack};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use glam::Vec3;

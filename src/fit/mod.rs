@@ -5,6 +5,16 @@
 //! c_i are centres too. A ridge on the diagonal smooths. The system is solved by LU.
 //!
 //! Every function is right up to its sign: f and −f fit the sites equally well, and [`crate::orient`] chooses.
+//!
+//! 1. [`cells`]: the sites are divided into overlapping sub-domains.
+//! 2. Fit: each sub-domain's system (eq. 11) is solved; [`local`] evaluates its function.
+//! 3. A sub-domain whose residual is beyond the accuracy asked for is divided and fitted again.
+//! 4. `faces`: which of two crossing sheets each part of a sub-domain belongs to, where the caller wants sharp edges.
+//!
+//! **In**: sites (positions, spacing, unoriented normals) in the unit frame. **Out**: [`Fits`], one function for each sub-domain
+//! with its domain, and the residual at every input point.
+//!
+//! **Cost**: one dense LU for each sub-domain, cubic in its sites, whose number is bounded: linear in the points.
 
 pub mod cells;
 pub(crate) mod faces;

@@ -11,7 +11,8 @@ mod materials;
 mod scene;
 
 use super::colors::ColorRange;
-use super::faces::{Face, Faces, NONE, srgb};
+use super::faces::srgb;
+use super::faces::triangles::{Face, Faces, NONE};
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Table};

@@ -10,7 +10,7 @@
 
 mod faces;
 
-use super::faces::Faces;
+use super::faces::triangles::Faces;
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Table};

@@ -1,7 +1,7 @@
 //! OFF (Geomview, 1996), as text: `OFF`, before it `C` for colours, `N` for normals, `ST` for texture; the counts of vertices
 //! and faces; then a vertex a line. Colours may follow the coordinates without the `C`, too. Comments start with `#`.
 
-use super::faces::{Face, Faces, NONE};
+use super::faces::triangles::{Face, Faces, NONE};
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Table};

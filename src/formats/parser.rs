@@ -1,6 +1,6 @@
 //! What reads a format: a parser.
 
-use super::faces::Faces;
+use super::faces::triangles::Faces;
 use super::input::Input;
 use super::preview::Preview;
 use super::table::Table;

@@ -12,7 +12,7 @@
 mod faces;
 mod header;
 
-use super::faces::Faces;
+use super::faces::triangles::Faces;
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::splats::SPLATS;

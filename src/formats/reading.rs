@@ -2,7 +2,8 @@
 
 use super::block::{Block, Verdict};
 use super::detect;
-use super::faces::{self, FaceMode, Faces, Picture, Sampling, Want};
+use super::faces::triangles::Faces;
+use super::faces::{self, FaceMode, Picture, Sampling, Want};
 use super::format::Format;
 use super::input::{Input, Place};
 use super::options::ReadOptions;

@@ -1,7 +1,7 @@
 //! STL (3D Systems, 1989), ascii and binary: the vertices of its triangles. Every triangle repeats its corners, so vertices
 //! of exactly equal coordinates are one point, where it came first.
 
-use super::faces::{Face, Faces};
+use super::faces::triangles::{Face, Faces};
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Precision, Table};

@@ -5,9 +5,10 @@
 //!
 //! A cap is a disc whatever its rim looks like; where that crosses itself in the plane the disc may, too.
 
-use crate::base::lists::{pack, unpack};
+use crate::base::sort_keys::{pack, unpack};
 use crate::mesh::disc::Disc;
 use crate::mesh::surface::Mesh;
+use crate::mesh::topology::area;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -68,7 +69,7 @@ pub(crate) fn diameter(mesh: &Mesh, rim: &[u32]) -> f64 {
 
 /// Caps these rims, and returns the share of the area that the caps have.
 pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
-    let before = crate::mesh::topology::area(&mesh.vertices, &mesh.triangles);
+    let before = area(&mesh.vertices, &mesh.triangles);
     let mut taken: Vec<u64> = Vec::new();
     let mut on_rim = vec![false; mesh.vertices.len()];
     rims.iter()
@@ -84,8 +85,12 @@ pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
     for rim in rims {
         cap(mesh, rim, &taken);
     }
-    let area = crate::mesh::topology::area(&mesh.vertices, &mesh.triangles);
-    if area > 0.0 { 1.0 - before / area } else { 0.0 }
+    let after = area(&mesh.vertices, &mesh.triangles);
+    if after > 0.0 {
+        1.0 - before / after
+    } else {
+        0.0
+    }
 }
 
 /// Caps one rim. `taken` are the edges of the mesh between vertices of rims, sorted.

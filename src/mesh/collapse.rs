@@ -1,6 +1,6 @@
 //! One half-edge collapse: what it costs, and whether it may be made.
 
-use crate::base::lists::Lists;
+use crate::base::groups::Groups;
 use crate::mesh::surface::Mesh;
 use glam::DVec3;
 
@@ -27,10 +27,10 @@ pub(crate) struct Collapse {
 }
 
 /// The triangles of every vertex.
-pub(crate) type Around = Lists<u32>;
+pub(crate) type VertexTriangles = Groups<u32>;
 
-pub(crate) fn around(mesh: &Mesh) -> Around {
-    Lists::new(mesh.vertices.len(), || {
+pub(crate) fn vertex_triangles(mesh: &Mesh) -> VertexTriangles {
+    Groups::new(mesh.vertices.len(), || {
         let triangles = mesh.triangles.iter().zip(0u32..);
         triangles.flat_map(|(corners, t)| corners.map(|v| (v, t)))
     })
@@ -38,7 +38,7 @@ pub(crate) fn around(mesh: &Mesh) -> Around {
 
 /// The link condition (Hoppe et al., 1993) for a vertex `v` inside of the surface: it has just the two neighbours in
 /// common with `to` whose triangles go, and if it has but three triangles, they are not the sides of a tetrahedron.
-pub(crate) fn can_collapse(v: u32, to: u32, mesh: &Mesh, around: &Around) -> bool {
+pub(crate) fn can_collapse(v: u32, to: u32, mesh: &Mesh, around: &VertexTriangles) -> bool {
     let triangle = |&t: &u32| mesh.triangles[t as usize];
     let list = around.of(v);
     let ring = || list.iter().map(|t| others(triangle(t), v));
@@ -90,7 +90,7 @@ impl Star {
         &mut self,
         v: u32,
         mesh: &Mesh,
-        around: &Around,
+        around: &VertexTriangles,
         rules: &Rules,
     ) -> Option<Collapse> {
         let (before, worst) = self.read(v, mesh, around, rules)?;
@@ -116,7 +116,7 @@ impl Star {
     }
 
     /// Whether a collapse onto corner `to` folds an edge: one of the new ones, or one of the ring.
-    fn folds(&self, to: usize, mesh: &Mesh, around: &Around) -> bool {
+    fn folds(&self, to: usize, mesh: &Mesh, around: &VertexTriangles) -> bool {
         let n = self.ring.len();
         let corner = |k: usize| &self.ring[(to + k) % n];
         let inside = |k: usize| {
@@ -147,7 +147,13 @@ impl Star {
     }
 
     /// Puts the ring of `v` in order. Returns what its triangles cost, and the squared sine of their least angle.
-    fn read(&mut self, v: u32, mesh: &Mesh, around: &Around, rules: &Rules) -> Option<(f64, f64)> {
+    fn read(
+        &mut self,
+        v: u32,
+        mesh: &Mesh,
+        around: &VertexTriangles,
+        rules: &Rules,
+    ) -> Option<(f64, f64)> {
         let at = |w: u32| mesh.vertices[w as usize].as_dvec3();
         let normal = |w: u32| mesh.normals[w as usize].as_dvec3();
         self.sides.clear();

@@ -5,15 +5,15 @@
 //! *turn*, the angle between the cap and the surface around it: a hole in a smooth part has the cap go on as the surface
 //! does, the open end of a pipe has it across.
 
-use crate::base::lists::pack;
 use crate::base::params::{Boundary, MaxHole};
 use crate::base::sets::Sets;
+use crate::base::sort_keys::pack;
 use crate::cloud::octree::Octree;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
-use crate::mesh::surface::Hole;
 use crate::mesh::trim::components;
 use glam::{DVec3, Vec3};
+use serde::Serialize;
 
 /// A component of which more than this share of the closed area would be filled is an open sheet, and has only holes that go
 /// on smoothly closed. A ball cut off at a third of its height needs 0.25, a half ball or a deep bowl 0.33; a terrain tile
@@ -26,6 +26,17 @@ const GAP: f32 = 2.0;
 const WIDEST: [f32; 2] = [0.1, 0.2];
 /// Cosine of the turn up to which a cap goes on as the surface does: 45°.
 const SMOOTH: f64 = 0.7;
+
+/// A hole of a surface, or the outer rim of an open one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Hole {
+    /// Of a hole that was closed, that of the largest disc in it (twice the largest distance of what closes it from the
+    /// points); of a rim, that of the disc whose area it encloses. Fraction of the diagonal.
+    pub diameter: f64,
+    /// Whether the surface goes on across it.
+    pub closed: bool,
+}
 
 /// What [`decide_holes`] left.
 #[derive(Debug, Default)]

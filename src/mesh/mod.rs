@@ -1,4 +1,7 @@
-//! The zero set of an implicit function as a mesh: manifold, welded, on a narrow band around the fitted points.
+//! The joined surface as a mesh: partition of unity (the stitching of section 4.2) and iso-surface extraction.
+//!
+//! The zero set of an implicit function becomes a mesh that is manifold and welded, on a narrow band around the fitted points.
+//! [`field`] joins the local functions; [`extract`] walks these steps:
 //!
 //! 1. `band`: the lattice cells that the surface crosses, found by walking along it from the points.
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
@@ -8,6 +11,13 @@
 //! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
 //!
 //! Of [`few`] points the mesh is made without a field.
+//!
+//! [`attach`] carries colours and scalars from the cloud to the vertices; [`topology`] counts components, handles and borders.
+//!
+//! **In**: an [`Implicit`] function, negative inside, and the fitted points with the radius that their functions reach, unit frame.
+//! **Out**: a [`Mesh`] in the unit frame; normals point outward, triangles run counter-clockwise seen from outside.
+//!
+//! **Cost**: by the area over the squared edge length of the lattice, most of it evaluations of the field in the band.
 //!
 //! G. M. Nielson, "Dual marching cubes", 2004; R. Wenger, *Isosurfaces: Geometry, Topology, and Algorithms*, 2013.
 
@@ -20,13 +30,13 @@ pub(crate) mod disc;
 pub(crate) mod dual;
 pub(crate) mod few;
 pub mod field;
-pub(crate) mod holes;
+pub mod holes;
 pub(crate) mod lattice;
 pub(crate) mod loops;
 pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
-pub mod surface;
+pub(crate) mod surface;
 pub mod topology;
 pub(crate) mod trim;
 
@@ -37,11 +47,10 @@ use crate::mesh::band::{grow, span};
 use crate::mesh::dual::{Dual, build};
 use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
-use crate::mesh::surface::Hole;
 use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
-pub use crate::mesh::holes::MOST_FILLED;
+pub use crate::mesh::holes::{Hole, MOST_FILLED};
 pub use crate::mesh::surface::{Implicit, Mesh};
 
 /// Options of [`extract`].

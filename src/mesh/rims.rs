@@ -1,6 +1,7 @@
 //! Smooth ends of open surfaces: the lattice leaves them in steps.
 
-use crate::base::lists::{Lists, pack, unpack};
+use crate::base::groups::Groups;
+use crate::base::sort_keys::{pack, unpack};
 use crate::mesh::surface::Mesh;
 use glam::DVec3;
 
@@ -17,7 +18,7 @@ pub(crate) fn smooth(mesh: &mut Mesh, at_end: &[bool]) {
         return;
     }
     let is_rim = |v: u32| rim.binary_search_by_key(&v, |r| r.vertex).ok();
-    let around: Lists<u32> = Lists::new(rim.len(), || {
+    let around: Groups<u32> = Groups::new(rim.len(), || {
         let triangles = mesh.triangles.iter().zip(0u32..);
         let corners = triangles.flat_map(|(corners, t)| corners.map(|v| (v, t)));
         corners.filter_map(|(v, t)| Some((is_rim(v)? as u32, t)))

@@ -16,9 +16,11 @@
 //! metrics", 1997, for the order of collapses by a cost that is local.
 
 use crate::base::error::Result;
-use crate::base::lists::{key, pack, unpack};
 use crate::base::par;
-use crate::mesh::collapse::{Around, Collapse, Rules, Star, around, can_collapse};
+use crate::base::sort_keys::{key, pack, unpack};
+use crate::mesh::collapse::{
+    Collapse, Rules, Star, VertexTriangles, can_collapse, vertex_triangles,
+};
 use crate::mesh::surface::Mesh;
 
 /// Curvature that every edge is taken to have on top of its own, as the turn of the normals along one edge of the
@@ -58,7 +60,7 @@ pub(crate) fn simplify(
         let done = (start - mesh.triangles.len()) as f32 / (start - most) as f32;
         let mut tell = || progress(done);
         let needed = (mesh.triangles.len() - most).div_ceil(2);
-        let around = around(mesh);
+        let around = vertex_triangles(mesh);
         let count = needed.max(ranking.out.len() / LEAST_SHARE);
         let stale = ranking.to_look_at(count);
         for slice in stale.chunks(TASKS_PER_SLICE * VERTICES_PER_TASK) {
@@ -90,7 +92,7 @@ pub(crate) fn simplify(
 /// Makes up to `needed` of these collapses, in this order, that do not touch each other.
 fn collapse(
     mesh: &mut Mesh,
-    around: &Around,
+    around: &VertexTriangles,
     order: &[u32],
     needed: usize,
     ranking: &mut Ranking,

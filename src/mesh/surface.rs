@@ -1,7 +1,6 @@
 //! What an extraction starts from, an implicit function, and what it makes, a mesh.
 
 use glam::{DVec3, Vec3};
-use serde::Serialize;
 
 /// A function whose zero set is a surface: negative inside, positive outside, about the distance near the surface.
 /// Positions are in the unit frame.
@@ -44,15 +43,4 @@ impl Mesh {
         self.normals.iter_mut().for_each(|n| *n = -*n);
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
-}
-
-/// A hole of a surface, or the outer rim of an open one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Hole {
-    /// Of a hole that was closed, that of the largest disc in it (twice the largest distance of what closes it from the
-    /// points); of a rim, that of the disc whose area it encloses. Fraction of the diagonal.
-    pub diameter: f64,
-    /// Whether the surface goes on across it.
-    pub closed: bool,
 }

@@ -1,7 +1,8 @@
-//! What can be counted and measured of a triangle mesh: its connectivity, area and volume.
+//! Connectivity, volume and area of a triangle mesh.
 
-use crate::base::lists::{Lists, pack, unpack};
+use crate::base::groups::Groups;
 use crate::base::sets::Sets;
+use crate::base::sort_keys::{pack, unpack};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
@@ -150,8 +151,8 @@ impl HalfEdge {
 }
 
 /// The half-edges of each vertex `lo`, packed: those of one edge are neighbours.
-fn half_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Lists<u64> {
-    let mut sorted = Lists::new(vertex_count, || {
+fn half_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Groups<u64> {
+    let mut sorted = Groups::new(vertex_count, || {
         let numbered = triangles.iter().zip(0u32..);
         numbered.flat_map(|(&[a, b, c], triangle)| {
             [(a, b), (b, c), (c, a)].map(|(from, to)| {

@@ -2,9 +2,10 @@
 //!
 //! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
 
-use crate::base::lists::{Lists, key, of_key, pack, unpack};
+use crate::base::groups::Groups;
 use crate::base::par;
 use crate::base::sets::Sets;
+use crate::base::sort_keys::{key, of_key, pack, unpack};
 use crate::cloud::octree::Octree;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
@@ -75,7 +76,7 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         let rim = RIM * reaches[reaches.len() / 2];
         nearest.distance2 > rim * rim
     };
-    let around = Lists::new(dual.vertices.len(), || {
+    let around = Groups::new(dual.vertices.len(), || {
         let quads = dual.quads.iter().zip(0u32..);
         quads.flat_map(|(quad, q)| quad.vertices.map(|v| (v, q)))
     });

@@ -100,7 +100,7 @@ impl Cells {
     /// Whether there is one range for each direction: in few cells a wide gap has some of the points on both sides.
     fn is_single(&self, seen: &[(Vec2, f32)]) -> bool {
         let ranges = || self.of.iter().copied().zip(seen.iter().map(|s| s.1));
-        let mut ranges = crate::base::lists::Lists::new(self.count, ranges);
+        let mut ranges = crate::base::groups::Groups::new(self.count, ranges);
         let (mut full, mut double) = (0.0, 0.0);
         for c in 0..self.count as u32 {
             let ranges = ranges.of_mut(c);

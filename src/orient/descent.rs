@@ -6,7 +6,7 @@
 //! frozen in and no cycle raises the energy (Hendrickson and Leland, "A multilevel algorithm for partitioning graphs", 1995,
 //! do the same for cuts).
 
-use crate::base::lists::Lists;
+use crate::base::groups::Groups;
 use crate::base::rng::Rng;
 use crate::orient::graph::{Edge, adjacency};
 use std::collections::VecDeque;
@@ -43,7 +43,7 @@ fn turn(signs: &mut [f32], by: &[f32]) {
 /// A graph whose nodes all have the sign +1.
 struct Level {
     /// Neighbours of every node and the weights of the edges to them.
-    links: Lists<(u32, f32)>,
+    links: Groups<(u32, f32)>,
     unary: Vec<f32>,
 }
 
@@ -52,7 +52,7 @@ impl Level {
     fn new(edges: &[Edge], unary: &[f32], signs: &[f32]) -> Level {
         let n = signs.len();
         let around = adjacency(n, edges);
-        let links = Lists::new(n, || {
+        let links = Groups::new(n, || {
             (0..n as u32).flat_map(|a| {
                 around.of(a).iter().map(move |&(e, b)| {
                     let weight = edges[e as usize].weight;
@@ -134,7 +134,7 @@ impl Level {
         for ((&c, h), s) in cluster.iter().zip(&self.unary).zip(signs) {
             unary[c as usize] += h * s;
         }
-        let members = Lists::new(count, || cluster.iter().copied().zip(0u32..));
+        let members = Groups::new(count, || cluster.iter().copied().zip(0u32..));
         // Where the edge to each cluster is in the list of the present one, if it has one.
         let mut place = vec![usize::MAX; count];
         let mut all: Vec<(u32, (u32, f32))> = Vec::new();
@@ -158,7 +158,7 @@ impl Level {
             }
         }
         Level {
-            links: Lists::new(count, || all.iter().copied()),
+            links: Groups::new(count, || all.iter().copied()),
             unary,
         }
     }

@@ -7,9 +7,10 @@
 //!   on one sheet, across a crease and on the two sides of a thin wall are all told right by the same formula. (It is
 //!   the Dirichlet energy of the winding number, which is 0 for a closed surface that looks out everywhere.)
 
+use crate::base::groups::Groups;
 use crate::base::kernel::dipoles;
-use crate::base::lists::{Lists, key, of_key, pack, ranked, unpack};
 use crate::base::sets::Sets;
+use crate::base::sort_keys::{key, of_key, pack, ranked, unpack};
 use crate::orient::domains::Domains;
 
 /// An edge between sub-domains `a` < `b`; positive weight: same sign.
@@ -38,7 +39,7 @@ pub(crate) fn edges(domains: &Domains) -> Vec<Edge> {
     let n_sites = sites.tree.points.len();
     let each = || fits.subdomains.iter().zip(gradients).zip(0u32..);
     // Gradients by site, and the sub-domain whose core a site is in.
-    let samples = Lists::new(n_sites, || {
+    let samples = Groups::new(n_sites, || {
         each().flat_map(|((subdomain, gradients), s)| {
             let samples = subdomain.support.iter().zip(gradients);
             samples.map(move |(&i, &g)| (i, (s, g)))
@@ -75,7 +76,7 @@ pub(crate) fn edges(domains: &Domains) -> Vec<Edge> {
             Some((a.min(b), pack(a.max(b), key(DIPOLES * stand))))
         })
     };
-    let mut said = Lists::new(fits.subdomains.len(), || shared().chain(neighbors()));
+    let mut said = Groups::new(fits.subdomains.len(), || shared().chain(neighbors()));
     drop(samples);
     let size = |s: u32| fits.subdomains[s as usize].support.len();
     let mut edges = Vec::new();
@@ -105,10 +106,10 @@ pub(crate) fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
 }
 
 /// The edges of every sub-domain: their indices, and the sub-domains at their other ends.
-pub(crate) type Adjacency = Lists<(u32, u32)>;
+pub(crate) type Adjacency = Groups<(u32, u32)>;
 
 pub(crate) fn adjacency(n: usize, edges: &[Edge]) -> Adjacency {
-    Lists::new(n, || {
+    Groups::new(n, || {
         let ends = edges.iter().zip(0u32..);
         ends.flat_map(|(e, i)| [(e.a, (i, e.b)), (e.b, (i, e.a))])
     })

@@ -5,8 +5,9 @@
 //! of the vase that stands on it: in such a T both sides of the wall are equally good, and what the edges say hangs on how
 //! the foot flares.
 
-use crate::base::lists::{Lists, key, pack, ranked, unpack};
+use crate::base::groups::Groups;
 use crate::base::sets::Sets;
+use crate::base::sort_keys::{key, pack, ranked, unpack};
 use crate::features::noise::quantile;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Adjacency, Edge, adjacency};
@@ -49,7 +50,7 @@ pub(crate) struct Parts {
     /// The part of every sub-domain.
     pub(crate) of: Vec<u32>,
     /// The sub-domains of every part.
-    pub(crate) members: Lists<u32>,
+    pub(crate) members: Groups<u32>,
     pub(crate) ties: Vec<Tie>,
 }
 
@@ -71,7 +72,7 @@ impl Parts {
         ground.join_smooth(&flat, &mut sets);
         loop {
             let (of, count) = sets.clone().numbered();
-            let members = Lists::new(count, || of.iter().copied().zip(0u32..));
+            let members = Groups::new(count, || of.iter().copied().zip(0u32..));
             let ties = ground.ties(&of, count);
             let joins = joins(&ties, &members);
             if joins.is_empty() {
@@ -103,7 +104,7 @@ impl Parts {
 
 /// The pairs of parts that become one: the strongest ties first. What joined a larger one takes nothing up in the same round,
 /// so that the T between two is seen before a third joins them.
-fn joins(ties: &[Tie], members: &Lists<u32>) -> Vec<(u32, u32)> {
+fn joins(ties: &[Tie], members: &Groups<u32>) -> Vec<(u32, u32)> {
     let size = |p: u32| members.of(p).len();
     let mut total = vec![0.0; members.count()];
     for tie in ties {
@@ -270,7 +271,7 @@ impl Ground<'_> {
 
     /// What ties every two pieces.
     fn ties(&self, of: &[u32], count: usize) -> Vec<Tie> {
-        let between = Lists::new(count, || {
+        let between = Groups::new(count, || {
             let numbered = self.edges.iter().zip(0u32..);
             numbered.filter_map(|(e, i)| {
                 let (a, b) = (of[e.a as usize], of[e.b as usize]);

@@ -1,6 +1,7 @@
 //! What is seen together from far away shows the same side.
 
 use crate::base::par;
+use crate::base::sort_keys::{key, sort_by_key};
 use crate::features::noise::quantile;
 use crate::orient::domains::Domains;
 use crate::orient::parts::Parts;
@@ -23,7 +24,7 @@ pub(crate) fn together(domains: &Domains, parts: &Parts, signs: &[f32]) -> Vec<(
     let mut large: Vec<u32> = (0..parts.count() as u32)
         .filter(|&p| size(p) >= LEAST)
         .collect();
-    crate::base::lists::sort_by_key(&mut large, |&p| !crate::base::lists::key(areas[p as usize]));
+    sort_by_key(&mut large, |&p| !key(areas[p as usize]));
     large.truncate(MOST);
     if large.len() < 2 {
         return Vec::new();

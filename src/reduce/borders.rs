@@ -7,7 +7,7 @@ use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::reduce::placement::{Members, Placed};
-use crate::reduce::surroundings::Around;
+use crate::reduce::surroundings::Surroundings;
 
 /// Distance of the weighted mean of a centre's neighbours from it, in radii, from which it may be at a border: a hexagonal
 /// lattice has 0.16 along a straight border, less where the rows interlock.
@@ -23,7 +23,7 @@ pub(crate) fn restore(
     tree: &Octree,
     features: &Features,
     members: &Members,
-    around: &[Around],
+    around: &[Surroundings],
     placed: &mut [Placed],
 ) {
     let unbalanced: Vec<usize> = (0..placed.len())

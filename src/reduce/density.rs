@@ -266,7 +266,7 @@ impl Groups {
 
 /// Memory of one worker.
 #[derive(Default)]
-struct Around {
+struct Surroundings {
     cell: Neighborhood,
     own: Neighborhood,
     found: Vec<Neighbor>,
@@ -276,7 +276,7 @@ struct Around {
 fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
     let tree = Octree::build(centers);
     let cells = tree.cut(|node| node.range().len() <= CELL);
-    let of = |c: usize, around: &mut Around| {
+    let of = |c: usize, around: &mut Surroundings| {
         let cell = cells[c].clone();
         let corners = bounds(&tree.points[cell.clone()]);
         let reach = MARGIN * even_reach(corners, cell.len(), RING);
@@ -304,7 +304,7 @@ fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
         rings
     };
     let mut rings = vec![Vec::new(); centers.len()];
-    par::map_each(cells.len(), Around::default, of, |c, found| {
+    par::map_each(cells.len(), Surroundings::default, of, |c, found| {
         for (&group, ring) in tree.order[cells[c].clone()].iter().zip(found) {
             rings[group as usize] = ring;
         }

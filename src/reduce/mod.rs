@@ -1,4 +1,22 @@
 //! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
+//!
+//! 1. Goal: how many points, and how close where. [`density`] asks for more of them where the surface is curved; a target
+//!    given as a `tolerance` is searched for by reducing and measuring.
+//! 2. Clusters: centres and memberships ([`clustering::Clustering`]), by one of two methods.
+//!    - Adaptive: [`clusters`], weighted fuzzy c-means over all sub-domains without seams (eq. 1, 2 and 5); centres start by
+//!      `farthest_first` traversal.
+//!    - Paper: [`paper`], sections 3.1 and 3.2 to the letter, with [`fcm`] in each sub-domain.
+//! 3. Placement: [`placement`] moves each centre from the mean of its members to their surface; `borders` moves those next to an
+//!    open border out to it (`surroundings` tells which).
+//! 4. What belongs to a point is carried to its reduced point: colours, scalars, the nearest input point, weights.
+//!
+//! [`height_field`] is the local surface that the reduced points stand for; distances to it are the reduction's error.
+//!
+//! **In**: a cloud, its octree and [`Features`], unit frame. **Out**: [`Reduced`], in the unit frame of the cloud, normals of
+//! unit length with the input's signs.
+//!
+//! **Cost**: a sweep of clustering meets each point with the centres within 1.25 wanted spacings of it; five sweeps at most by
+//! default. A tolerance takes one to five reductions, mostly.
 
 pub(crate) mod borders;
 pub mod clustering;
@@ -35,7 +53,7 @@ use crate::reduce::placement::{Members, Placed};
 use crate::reduce::places::Places;
 use crate::reduce::shares::{SHARES, Shares};
 use crate::reduce::stats::stats;
-use crate::reduce::surroundings::Around;
+use crate::reduce::surroundings::Surroundings;
 
 pub use crate::reduce::stats::ReduceStats;
 
@@ -200,7 +218,7 @@ struct Job<'a> {
 struct Arrangement {
     /// The area of surface that each stands for.
     areas: Vec<f64>,
-    around: Vec<Around>,
+    around: Vec<Surroundings>,
 }
 
 impl Job<'_> {

@@ -11,10 +11,10 @@ use std::ops::Range;
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::base::linalg::sym_eigen;
-use crate::base::lists::{key, ranked, unpack};
 use crate::base::par;
 use crate::base::params::{COLORS, Carry, Placement};
 use crate::base::power::Fuzzifier;
+use crate::base::sort_keys::{key, ranked, unpack};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::cloud::{Attribute, Cloud};

@@ -3,7 +3,7 @@
 use crate::base::power::Fuzzifier;
 use crate::cloud::octree::Octree;
 use crate::reduce::clustering::Clustering;
-use crate::reduce::surroundings::Around;
+use crate::reduce::surroundings::Surroundings;
 
 /// Figures of one reduction.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -26,7 +26,7 @@ pub struct ReduceStats {
 pub(crate) fn stats(
     tree: &Octree,
     clustering: &Clustering,
-    around: &[Around],
+    around: &[Surroundings],
     power: Fuzzifier,
 ) -> ReduceStats {
     let centers = &clustering.centers;

@@ -13,7 +13,7 @@ const RING: f32 = 1.7;
 
 /// What is around one centre.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Around {
+pub(crate) struct Surroundings {
     /// Squared distance to the nearest other centre; infinite where there is none.
     pub(crate) apart2: f32,
     /// Weighted mean of the centres around, from this one, in radii of [`RING`] spacings.
@@ -28,7 +28,10 @@ struct Scratch {
 }
 
 /// Measures every centre, in the order from which `index` was built; `spacing` in the same order.
-pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Send) -> Vec<Around> {
+pub(crate) fn measure(
+    index: &Octree,
+    spacing: impl Fn(usize) -> f32 + Sync + Send,
+) -> Vec<Surroundings> {
     let spacing = |i: usize| spacing(index.order[i] as usize);
     let cells = index.cut(|node| node.range().len() <= CELL);
     let of = |c: usize, scratch: &mut Scratch| {
@@ -57,7 +60,7 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
         }
         around
     };
-    let mut all = vec![Around::default(); index.points.len()];
+    let mut all = vec![Surroundings::default(); index.points.len()];
     par::map_each(cells.len(), Scratch::default, of, |c, measured| {
         for (&i, around) in index.order[cells[c].clone()].iter().zip(measured) {
             all[i as usize] = around;
@@ -67,7 +70,7 @@ pub(crate) fn measure(index: &Octree, spacing: impl Fn(usize) -> f32 + Sync + Se
 }
 
 /// What is around each lane's centre, as far as the neighbourhood reaches.
-fn block_of(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Around; LANES] {
+fn block_of(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Surroundings; LANES] {
     let one = Lanes::splat(1.0);
     let scale = one / radius.max(Lanes::splat(f32::MIN_POSITIVE));
     let mut apart2 = Lanes::splat(f32::INFINITY);
@@ -90,7 +93,7 @@ fn block_of(block: &Block, radius: Lanes, hood: &Neighborhood) -> [Around; LANES
     }
     let [x, y, z, w] = sums;
     let [x, y, z] = [x, y, z].map(|sum| sum * scale / w);
-    std::array::from_fn(|l| Around {
+    std::array::from_fn(|l| Surroundings {
         apart2: apart2.lane(l),
         mean: Vec3::new(x.lane(l), y.lane(l), z.lane(l)),
     })

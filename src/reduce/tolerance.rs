@@ -5,8 +5,8 @@
 //! the chord is scaled until [`SURFACE`] of the scan is just within the tolerance.
 
 use crate::base::error::Result;
-use crate::base::lists::{key, of_key, ranked, unpack};
 use crate::base::progress::{Part, Progress, Stage};
+use crate::base::sort_keys::{key, of_key, ranked, unpack};
 use crate::features::Features;
 use crate::features::noise::Scales;
 use std::ops::RangeInclusive;

@@ -1,9 +1,9 @@
 //! Distances from points to a mesh.
 
 use crate::base::error::Result;
-use crate::base::lists::{key, of_key, pack, unpack};
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
+use crate::base::sort_keys::{key, of_key, pack, unpack};
 use crate::cloud::octree::Octree;
 use crate::report::DistanceStats;
 use glam::{DVec3, Vec3};

@@ -2,6 +2,12 @@
 //!
 //! Lengths are fractions of the bounding-box diagonal of the input, which is the unit of the unit frame. The structs
 //! serialise in camel case, as JS sees them; a number that does not exist for a job is 0, and `reason` says why.
+//!
+//! 1. [`distance`] measures how far every input point is from the mesh.
+//! 2. `knowledge` says what may not be as it should, in sentences.
+//! 3. [`ReduceReport`] and [`SurfaceReport`] hold both with counts, topology ([`crate::mesh::topology`]) and times.
+//!
+//! **Cost**: one nearest-triangle query for each input point.
 
 pub mod distance;
 mod knowledge;
@@ -9,7 +15,7 @@ mod knowledge;
 use serde::Serialize;
 
 pub use crate::base::clock::StageTimes;
-pub use crate::mesh::surface::Hole;
+pub use crate::mesh::holes::Hole;
 pub use crate::mesh::topology::{Topology, area, topology, volume};
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;

@@ -5,32 +5,26 @@
 //! are asked for ([`Faces::want`]), and [`sample`] makes the points: evenly over the area, seeded, at distances as of blue
 //! noise, with normals, colours and attributes interpolated.
 
-mod looks;
+pub(super) mod looks;
 mod normals;
 mod paint;
 mod polygons;
 pub(super) mod sampling;
 mod spread;
-mod triangles;
+pub(super) mod triangles;
 mod vectors;
 
 use super::colors::ColorRange;
 use super::raw_cloud::RawCloud;
 use super::table::{Columns, Table};
 pub use looks::Picture;
-#[cfg(any(feature = "files", feature = "packed"))]
-pub(super) use looks::{Look, Texture, Wrap};
 use normals::CornerNormals;
 use paint::Painter;
 #[cfg(feature = "packed")]
 pub(super) use paint::srgb;
 pub use sampling::Sampling;
-pub(super) use triangles::Faces;
-#[cfg(feature = "packed")]
-pub(super) use triangles::Source;
+use triangles::Faces;
 pub use triangles::Want;
-#[cfg(any(feature = "files", feature = "packed"))]
-pub(super) use triangles::{Face, NONE};
 use vectors::unit;
 
 /// Fewest and most points that a mesh becomes, and points a triangle between the two.

@@ -1,6 +1,7 @@
 //! Colours of materials: the base colour's factor, texture, its transform and sampler.
 
-use super::super::faces::{Faces, Look, Source, Texture, Wrap};
+use super::super::faces::looks::{Look, Texture, Wrap};
+use super::super::faces::triangles::{Faces, Source};
 use super::accessor::within;
 use super::scene::{Document, Image, Material, TextureUse};
 

@@ -1,7 +1,8 @@
 //! The faces of an OBJ file: corners as `vertex/place/normal`, counted from 1, or from the last one backwards; and which material
 //! of which library they have.
 
-use super::super::faces::{Face, Faces, Look, NONE};
+use super::super::faces::looks::Look;
+use super::super::faces::triangles::{Face, Faces, NONE};
 use super::super::table::Table;
 use super::super::text::{number, words};
 

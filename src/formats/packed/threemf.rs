@@ -3,7 +3,7 @@
 //! materials, by vertex.
 
 use super::super::colors::ColorRange;
-use super::super::faces::{Face, Faces};
+use super::super::faces::triangles::{Face, Faces};
 use super::super::input::Input;
 use super::super::parser::{Parser, Step};
 use super::super::table::{Columns, Table};

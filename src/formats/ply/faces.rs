@@ -1,7 +1,8 @@
 //! The faces of a PLY file: the lists `vertex_indices` (or `vertex_index`) of the element `face`, with colours, and with the
 //! `texcoord` lists and `comment TextureFile` of MeshLab and of photogrammetry; strips of the element `tristrips`.
 
-use super::super::faces::{Face, Faces, Look, NONE, Texture, Wrap};
+use super::super::faces::looks::{Look, Texture, Wrap};
+use super::super::faces::triangles::{Face, Faces, NONE};
 use super::super::table::Table;
 use super::header::{Element, Header, Property};
 
