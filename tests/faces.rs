@@ -406,6 +406,7 @@ fn vertices_without_faces_are_left_out_and_faces_without_vertices_too() {
     (0..50).for_each(|i| file += &format!("v {i} 0 7\n"));
     let cloud = sampled(file.as_bytes(), Format::Obj);
     assert_eq!(values(&cloud).iter().filter(|p| p[2] == 7.0).count(), 50);
+    assert!(cloud.sampling.unused == 0 && cloud.skipped.is_empty());
     // Vertices that are not finite take their faces with them, and no other's.
     let file = "v nan 0 0\nv 1 1 1\nv 2 1 1\nv 1 2 1\nf 1 2 3\nf 2 3 4\n";
     let cloud = sampled(file.as_bytes(), Format::Obj);
