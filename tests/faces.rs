@@ -365,6 +365,7 @@ fn strips_and_polygons_become_triangles() {
     let strip = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
                  property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n6 0 1 2 3 -1 4\n";
     let cloud = sampled(strip.as_bytes(), Format::Ply);
+    assert_eq!(cloud.faces, 2);
     assert!(normals(&cloud).iter().all(|n| n[2] == 1.0));
     assert!(values(&cloud).iter().all(|p| p[0] <= 1.0 && p[1] <= 1.0));
     // An arrowhead: nothing in its notch.
