@@ -36,7 +36,7 @@ export function merged(clouds, names) {
     ...(seenFromAbove && alike('seenFromAbove') && { seenFromAbove }),
     ...(some('faces') && { faces: clouds.reduce((all, cloud) => all + (cloud.faces ?? 0), 0) }),
     skipped: summed(clouds.map(({ skipped = {} }) => skipped)),
-    file: { ...file, dropped: sum('dropped'), replaced: sum('replaced'), faces: sum('faces'), notes: notesOf(clouds, names), ...ofFaces(clouds) },
+    file: { ...file, table: undefined, dropped: sum('dropped'), replaced: sum('replaced'), faces: sum('faces'), notes: notesOf(clouds, names), ...ofFaces(clouds) },
   });
 }
 

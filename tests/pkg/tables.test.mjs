@@ -123,6 +123,7 @@ test('the scans of an archive are one cloud', async (t) => {
     assert.deepEqual([...cloud.colors], [9, 8, 7, 9, 8, 7, 255, 255, 255]);
     assert.deepEqual([...cloud.attributes.a], [0, 0, 5]);
     assert.deepEqual(cloud.file.notes, ['The points are those of 2 files: a/one.ply, two.xyz.']);
+    assert.deepEqual([cloud.columns, cloud.file.table], [undefined, undefined]);
     assert.ok(told.every((share, i) => i === 0 || share >= told[i - 1]) && told.at(-1) === 1, String(told));
   }
   assert.equal((await read(zip({ 'notes.txt': '1 2 3\n' }))).positions.length, 3);
