@@ -164,7 +164,8 @@ export interface FileCloud<Positions extends Float32Array | Float64Array = Float
   columns?: string[];
   /**
    * Points left out, by why: `not-finite`, `invalid` (the file marks them), `no-data` (a coordinate stands for a missing one,
-   * such as -9999), `no-return` (many at exactly 0 0 0 or at the sensor).
+   * such as -9999), `no-return` (many at exactly 0 0 0 or at the sensor), `unused-vertices` (no face names them). Faces that name a
+   * vertex that there is not are `broken-faces`.
    */
   skipped: Record<string, number>;
   file: {
@@ -334,7 +335,7 @@ export interface Engine {
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
   inspect(cloud: PointCloud, options?: CallOptions): Promise<CloudInfo>;
   /**
-   * Reads in slices, so a `File` is never in memory as a whole unless its format needs that (LAZ, E57, GLB, packed PCD). Bytes
+   * Reads in slices, so a `File` is never in memory as a whole unless its format needs that (LAZ, E57, GLB, 3MF, GeoTIFF, SPZ, packed PCD, archives). Bytes
    * beyond the first 4 MiB of a buffer are copied while it is read: leave them alone meanwhile.
    */
   read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<FileCloud>;

@@ -365,6 +365,7 @@ fn strips_and_polygons_become_triangles() {
     let strip = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
                  property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n6 0 1 2 3 -1 4\n";
     let cloud = sampled(strip.as_bytes(), Format::Ply);
+    assert_eq!(cloud.faces, 2);
     assert!(normals(&cloud).iter().all(|n| n[2] == 1.0));
     assert!(values(&cloud).iter().all(|p| p[0] <= 1.0 && p[1] <= 1.0));
     // An arrowhead: nothing in its notch.
@@ -406,6 +407,7 @@ fn vertices_without_faces_are_left_out_and_faces_without_vertices_too() {
     (0..50).for_each(|i| file += &format!("v {i} 0 7\n"));
     let cloud = sampled(file.as_bytes(), Format::Obj);
     assert_eq!(values(&cloud).iter().filter(|p| p[2] == 7.0).count(), 50);
+    assert!(cloud.sampling.unused == 0 && cloud.skipped.is_empty());
     // Vertices that are not finite take their faces with them, and no other's.
     let file = "v nan 0 0\nv 1 1 1\nv 2 1 1\nv 1 2 1\nf 1 2 3\nf 2 3 4\n";
     let cloud = sampled(file.as_bytes(), Format::Obj);

@@ -303,6 +303,14 @@ fn points_of_colmap() {
 }
 
 #[test]
+fn a_list_before_the_place_is_a_column_like_others() {
+    let text = table("id,tags[],x,y,z", |[x, y, z], i| {
+        format!("{i},a,{x},{y},{z}")
+    });
+    assert_eq!(right(&text).columns, ["id", "-", "x", "y", "z"]);
+}
+
+#[test]
 fn colours_without_names() {
     let text = table("", |[x, y, z], i| {
         format!(

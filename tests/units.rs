@@ -118,6 +118,17 @@ fn a_cloud_that_says_nothing_stays_as_it_is_and_cannot_be_told() {
             .code(),
         "bad-option"
     );
+    // Nor has a cloud whose own up is no direction.
+    let nowhere = RawCloud {
+        up: Some([0.0; 3]),
+        ..scan()
+    };
+    assert_eq!(
+        write(&nowhere, None, Output::Glb, WriteOptions::default())
+            .unwrap_err()
+            .code(),
+        "bad-option"
+    );
     // Degrees are no lengths.
     let degrees = RawCloud {
         unit: Some(Unit::Degree),
@@ -331,6 +342,11 @@ fn las_and_laz_keep_colours_attributes_normals_and_reference_systems() {
             bytes,
             write(&cloud, None, output, WriteOptions::default()).unwrap()
         );
+    }
+    // However large or small a cloud is, there are steps for it.
+    for size in [1e308, 1e-310] {
+        let pair = RawCloud::new(Positions::F64(vec![-size, 0.0, 0.0, size, 0.0, 0.0]));
+        assert!(write(&pair, None, Output::Las, WriteOptions::default()).is_ok());
     }
     // Shares of 1 are no whole numbers: they stay what they are.
     cloud.attributes = vec![attribute("intensity", [0.0, 0.5, 1.0])];

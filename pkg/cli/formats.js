@@ -7,12 +7,12 @@ import { UsageError } from './usage.js';
 
 /** All that are written. */
 export const FORMATS = TABLES.write.format.names;
-/** The one that holds triangles alone. */
-const MESHES_ALONE = 'stl';
+/** Those that hold triangles alone. */
+const MESHES_ALONE = ['stl', '3mf'];
 
 /** @param {Command} command */
 function formatsOf(command) {
-  return FORMATS.filter((name) => command === 'reconstruct' || name !== MESHES_ALONE);
+  return FORMATS.filter((name) => command === 'reconstruct' || !MESHES_ALONE.includes(name));
 }
 
 /**
@@ -25,7 +25,7 @@ export function checkFormat(command, format, what) {
   if (possible.includes(format)) return format;
   const names = possible.join(', ');
   throw new UsageError(
-    format === MESHES_ALONE ? `${what}: an STL file holds triangles, not points: expected ${names}` : `${what} is no format that is written: expected ${names}`,
+    MESHES_ALONE.includes(format) ? `${what}: STL and 3MF files hold triangles, not points: expected ${names}` : `${what} is no format that is written: expected ${names}`,
   );
 }
 

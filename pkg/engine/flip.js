@@ -69,6 +69,8 @@ function pieces(indices, vertices) {
 
 /** Vertices of a mesh lie about as far apart as points, so that this many cells along the diagonal hold a few each. */
 const CELLS = 128;
+/** Farther away, rings hold more cells than there are vertices to look at. */
+const RINGS = 8;
 
 /**
  * The vertex nearest to a point.
@@ -96,15 +98,19 @@ function nearest(vertices, points) {
   }
   return (point) => {
     const center = cellOf(points, point);
+    const [x, y, z] = [points[3 * point], points[3 * point + 1], points[3 * point + 2]];
     let [best, least] = [0, Infinity];
+    const look = (/** @type {number} */ v) => {
+      const distance = Math.hypot(vertices[3 * v] - x, vertices[3 * v + 1] - y, vertices[3 * v + 2] - z);
+      if (distance < least) [best, least] = [v, distance];
+    };
     // Rings of cells, until what lies in the next one is farther.
-    for (let ring = 0; (ring - 1) * size < least && ring <= 2 * CELLS; ring++) {
-      for (const cell of shell(center, ring)) {
-        for (const v of cells.get(key(cell)) ?? []) {
-          const distance = Math.hypot(...[0, 1, 2].map((k) => vertices[3 * v + k] - points[3 * point + k]));
-          if (distance < least) [best, least] = [v, distance];
-        }
+    for (let ring = 0; (ring - 1) * size < least; ring++) {
+      if (ring > RINGS) {
+        for (let v = 0; v < vertices.length / 3; v++) look(v);
+        break;
       }
+      for (const cell of shell(center, ring)) cells.get(key(cell))?.forEach(look);
     }
     return best;
   };

@@ -19,7 +19,7 @@ export function merged(clouds, names) {
   const Positions = clouds.some(({ positions }) => positions instanceof Float64Array) ? Float64Array : Float32Array;
   const attributes = new Set(clouds.flatMap(({ attributes = {} }) => Object.keys(attributes)));
   const viewpoints = clouds.every((cloud) => cloud.viewpoints) ? viewpointsOf(clouds, counts) : undefined;
-  const [{ up, unit, seenFromAbove, file }] = clouds;
+  const [{ up, unit, crs, seenFromAbove, file }] = clouds;
   const alike = (/** @type {string} */ name) => clouds.every((cloud) => JSON.stringify(cloud[name]) === JSON.stringify(clouds[0][name]));
   const sum = (/** @type {string} */ name) => clouds.reduce((all, cloud) => all + cloud.file[name], 0);
   return /** @type {FileCloud} */ ({
@@ -32,10 +32,11 @@ export function merged(clouds, names) {
     ...(viewpoints && { viewpoints }),
     ...(up && alike('up') && { up }),
     ...(unit && alike('unit') && { unit }),
+    ...(crs && alike('crs') && { crs }),
     ...(seenFromAbove && alike('seenFromAbove') && { seenFromAbove }),
     ...(some('faces') && { faces: clouds.reduce((all, cloud) => all + (cloud.faces ?? 0), 0) }),
     skipped: summed(clouds.map(({ skipped = {} }) => skipped)),
-    file: { ...file, dropped: sum('dropped'), replaced: sum('replaced'), faces: sum('faces'), notes: notesOf(clouds, names), ...ofFaces(clouds) },
+    file: { ...file, table: undefined, dropped: sum('dropped'), replaced: sum('replaced'), faces: sum('faces'), notes: notesOf(clouds, names), ...ofFaces(clouds) },
   });
 }
 

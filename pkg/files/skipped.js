@@ -6,6 +6,8 @@ const WHY = {
   invalid: 'marked as invalid',
   'no-data': 'without data (such as -9999)',
   'no-return': 'without a return (at 0 0 0 or at the sensor)',
+  'unused-vertices': 'vertices that no face names',
+  'broken-faces': 'faces with a corner that there is not',
 };
 
 /**

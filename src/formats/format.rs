@@ -11,13 +11,13 @@ pub enum Format {
     Xyz,
     /// PCD, the Point Cloud Library's: ascii, binary, compressed.
     Pcd,
-    /// Wavefront OBJ: its vertices.
+    /// Wavefront OBJ: its faces, or its vertices.
     Obj,
-    /// OFF, the object file format of Geomview: its vertices.
+    /// OFF, the object file format of Geomview: its faces, or its vertices.
     Off,
-    /// STL, ascii and binary: its vertices, each once.
+    /// STL, ascii and binary: its triangles, or its vertices, each once.
     Stl,
-    /// Binary glTF: the vertices of its scene.
+    /// Binary glTF: the triangles, or the vertices, of its scene.
     Glb,
     /// ASPRS LAS 1.0 to 1.4 and LAZ, its compressed form.
     Las,
@@ -29,7 +29,7 @@ pub enum Format {
     Grid,
     /// GeoTIFF with one band: an elevation grid.
     Tiff,
-    /// 3MF: its vertices.
+    /// 3MF: its triangles, or its vertices.
     ThreeMf,
     /// Gaussian splats of 32 bytes: their centres.
     Splat,
@@ -56,7 +56,7 @@ impl Format {
         Format::Splat,
         Format::Spz,
     ];
-    /// Those that are written, too, and read back to the same bits.
+    /// Those that are written, too, and read back to the same bits; [`super::Output`] has all that are written.
     pub const WRITTEN: [Format; 2] = [Format::Ply, Format::Xyz];
 
     /// Lower-case name, as `format` in the JS interface: `ply`, `xyz`.

@@ -67,7 +67,8 @@ pub struct RawCloud {
     pub faces: u64,
     /// What was made of them.
     pub sampling: Sampling,
-    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`. The first two are `dropped`.
+    /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`, `unused-vertices`; and `broken-faces`. The first
+    /// two are `dropped`.
     pub skipped: Vec<(&'static str, u64)>,
     /// What the columns of a table of text were taken for, as [`crate::formats::ReadOptions::columns`] says it.
     pub columns: Vec<String>,

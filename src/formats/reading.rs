@@ -33,6 +33,8 @@ pub struct Reading {
     size: u64,
     /// Faces that wait for what they need besides.
     faces: Option<Faces>,
+    /// What they are as triangles.
+    triangles: u64,
     sampled: Sampling,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
@@ -88,6 +90,7 @@ impl Reading {
             name: name.map(String::from),
             size,
             faces: None,
+            triangles: 0,
             sampled: Sampling::default(),
             parser: None,
             table: None,
@@ -204,13 +207,18 @@ impl Reading {
         let parser = self.parser.as_ref();
         let keep = self.options.keep_sentinels;
         let crs = parser.and_then(|parser| parser.crs());
+        // Strips are no faces that a file counts.
+        let faces = match parser.map_or(0, |parser| parser.faces()) {
+            0 if self.sampled.points > 0 => self.triangles,
+            faces => faces,
+        };
         Summary {
             format,
             points: table.map_or(0, |table| table.rows),
             verdict: table.map_or_else(none, |table| table.verdict(keep)),
             dropped: table.map_or(0, |table| table.dropped + table.invalid),
             replaced: table.map_or(0, |table| table.replaced),
-            faces: parser.map_or(0, |parser| parser.faces()),
+            faces,
             skipped: table.map_or(Vec::new(), |table| {
                 [table.skipped([0; 2]), self.sampled.skipped()].concat()
             }),
@@ -330,6 +338,8 @@ impl Reading {
             self.faces = parser
                 .take_faces()
                 .filter(|faces| HAVE_FACES && !faces.corners.is_empty());
+            let triangles = |faces: &Faces| faces.corners.len() as u64;
+            self.triangles = self.faces.as_ref().map_or(0, triangles);
         }
         self.place = input.place;
         Ok(if self.done {

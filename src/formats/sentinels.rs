@@ -69,6 +69,8 @@ pub(super) struct Sentinels {
     huge: u64,
     /// 0 0 0, then the sensors; and points at each.
     places: Vec<([f64; 3], u64)>,
+    /// Which of them is the sensor of now.
+    sensor: usize,
     /// The first other places, and points at each.
     peers: Vec<([f64; 3], u64)>,
 }
@@ -81,6 +83,7 @@ impl Default for Sentinels {
             no_data: Default::default(),
             huge: 0,
             places: vec![([0.0; 3], 0)],
+            sensor: 0,
             peers: Vec::new(),
         }
     }
@@ -89,9 +92,11 @@ impl Default for Sentinels {
 impl Sentinels {
     /// Points from here on were seen from this place.
     pub(super) fn seen_from(&mut self, sensor: [f64; 3]) {
-        if self.places.iter().all(|(place, _)| *place != sensor) {
+        let known = self.places.iter().position(|(place, _)| *place == sensor);
+        self.sensor = known.unwrap_or_else(|| {
             self.places.push((sensor, 0));
-        }
+            self.places.len() - 1
+        });
     }
 
     pub(super) fn add(&mut self, position: [f64; 3]) {
@@ -105,9 +110,7 @@ impl Sentinels {
                 odd = true;
             }
         }
-        // The last place is the sensor of now.
-        let last = self.places.len() - 1;
-        for i in [0, last] {
+        for i in [0, self.sensor] {
             if !odd && self.places[i].0 == position {
                 self.places[i].1 += 1;
                 odd = true;
@@ -200,5 +203,22 @@ impl LeftOut {
             return Some(Why::NoData);
         }
         self.no_returns.contains(&position).then_some(Why::NoReturn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_returns_of_a_sensor_that_scans_again_are_found() {
+        let (first, second) = ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
+        let mut sentinels = Sentinels::default();
+        for (sensor, missing) in [(first, 0), (second, 0), (first, 30)] {
+            sentinels.seen_from(sensor);
+            (0..100).for_each(|i| sentinels.add([10.0, f64::from(i), 0.0]));
+            (0..missing).for_each(|_| sentinels.add(sensor));
+        }
+        assert_eq!(sentinels.verdict().no_returns, [first]);
     }
 }

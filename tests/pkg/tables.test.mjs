@@ -9,6 +9,7 @@ import test from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import { read } from 'pointweave';
+import { merged } from '../../pkg/files/merging.js';
 import { engineFor, rejection } from './support.mjs';
 
 const bytes = (text) => new TextEncoder().encode(text);
@@ -122,12 +123,24 @@ test('the scans of an archive are one cloud', async (t) => {
     assert.deepEqual([...cloud.colors], [9, 8, 7, 9, 8, 7, 255, 255, 255]);
     assert.deepEqual([...cloud.attributes.a], [0, 0, 5]);
     assert.deepEqual(cloud.file.notes, ['The points are those of 2 files: a/one.ply, two.xyz.']);
+    assert.deepEqual([cloud.columns, cloud.file.table], [undefined, undefined]);
     assert.ok(told.every((share, i) => i === 0 || share >= told[i - 1]) && told.at(-1) === 1, String(told));
   }
   assert.equal((await read(zip({ 'notes.txt': '1 2 3\n' }))).positions.length, 3);
   assert.equal((await read(gzipSync(PLY), { name: 'scan.ply.gz' })).positions.length, 6);
   const none = await rejection(read(zip({ 'a.doc': 'x', 'b.doc': 'y' })));
   assert.deepEqual([none.code, none.found], ['unsupported-file', 'a.doc, b.doc']);
+});
+
+test('scans of one reference system keep it', () => {
+  const scan = (/** @type {number[]} */ ...keys) => ({
+    positions: Float64Array.of(1, 2, 3),
+    crs: { keys: Uint16Array.from(keys) },
+    file: { format: 'las', dropped: 0, replaced: 0, faces: 0, notes: [] },
+  });
+  const names = ['a.las', 'b.las'];
+  assert.deepEqual(merged([scan(1, 2), scan(1, 2)], names).crs, { keys: Uint16Array.of(1, 2) });
+  assert.ok(!('crs' in merged([scan(1, 2), scan(1, 3)], names)));
 });
 
 test('the command line says what the columns are, and what was left out', () => {

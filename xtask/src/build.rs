@@ -1,5 +1,5 @@
-//! The wasm builds: the engine with and without threads (DESIGN: "Two builds, one code"), and the readers of
-//! files, in modules that are loaded when such a file comes.
+//! The wasm builds: the engine with and without threads, from one code, and readers, decoders and writers of files, in modules
+//! that are loaded when such a file comes.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -92,8 +92,9 @@ pub(super) fn sample(
         sampling.points += 1;
     }
     let loose = loose_vertices(&faces, vertices);
-    sampling.unused = loose.len() as u64;
-    if keeps_loose(&loose, vertices) {
+    if !keeps_loose(&loose, vertices) {
+        sampling.unused = loose.len() as u64;
+    } else {
         for &i in &loose {
             row[..3].copy_from_slice(&position(i));
             row[3..6].copy_from_slice(&vertex_normal(vertices, i));

@@ -5,7 +5,7 @@
 pub struct Sampling {
     /// Points that were taken from faces; 0 where the points are the file's own.
     pub points: u64,
-    /// Vertices that no face uses.
+    /// Vertices that no face uses and that were left out.
     pub unused: u64,
     /// Faces that name a vertex that there is not.
     pub broken: u64,

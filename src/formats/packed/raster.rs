@@ -72,11 +72,12 @@ fn read(bytes: &[u8], keep: bool, table: &mut Option<Table>) -> TiffResult<Optio
 
     let (chunk_width, chunk_height) = file.chunk_dimensions();
     let across = width.div_ceil(chunk_width.max(1)).max(1);
-    let chunks = across * height.div_ceil(chunk_height.max(1));
+    let chunks = u64::from(across) * u64::from(height.div_ceil(chunk_height.max(1)));
     // A chunk has a byte at least.
-    if u64::from(chunks) > bytes.len() as u64 {
+    if chunks > bytes.len() as u64 {
         return Err(TiffError::LimitsExceeded);
     }
+    let chunks = u32::try_from(chunks).map_err(|_| TiffError::LimitsExceeded)?;
     let table = table.insert(Table::new(Columns::xyz(), None));
     for chunk in 0..chunks {
         let (wide, high) = file.chunk_data_dimensions(chunk);

@@ -202,9 +202,10 @@ fn transforms(cloud: &RawCloud) -> Result<Vector<Transform>> {
     let longest = (0..3)
         .map(|axis| high[axis] - low[axis])
         .fold(0.0, f64::max);
-    // Powers by division and multiplication: the same everywhere. A place has steps, too.
+    // Powers by division and multiplication: the same everywhere. A place has steps, too. No steps are so fine or so
+    // coarse that there is no power of ten beside them.
     let wanted = if longest > 0.0 {
-        longest / f64::from(1 << 23)
+        (longest / f64::from(1 << 23)).clamp(f64::MIN_POSITIVE, f64::MAX)
     } else {
         1e-3
     };

@@ -148,6 +148,7 @@ pub fn write(
         check_triangles(indices, cloud.points())?;
     }
     check_up(options.up)?;
+    check_up(cloud.up)?;
     let up = Wanted::of(options.up, format.up());
     let standing = stand::stand(cloud, up, Wanted::of(options.unit, format.unit()))?;
     let cloud = standing.as_ref().unwrap_or(cloud);

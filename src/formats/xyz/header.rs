@@ -61,8 +61,11 @@ pub(super) fn header(
             "numbers, or different column names with x, y and z",
         ));
     }
-    // COLMAP: a list whose length differs ends the row.
-    let list = names.iter().position(|name| name.contains("[]"));
+    // COLMAP: a list whose length differs ends the row. One before x, y and z is a column like others.
+    let list = names
+        .iter()
+        .position(|name| name.contains("[]"))
+        .filter(|&list| names::roles(&names[..list]).is_some());
     if let Some(list) = list {
         names.truncate(list);
     }
