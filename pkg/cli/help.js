@@ -53,7 +53,7 @@ export function help(command) {
   const output = command === 'inspect' ? '' : ` -o result.${command === 'reduce' ? 'ply' : 'glb'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
   const works = command !== 'inspect';
-  const listed = [...sections, ['Scan', [...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
+  const listed = [...sections, ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   return `pointweave ${command}: ${DOES[command]}
 

@@ -35,6 +35,8 @@ pub(super) struct Tally {
     over_1: u64,
     over_255: u64,
     over_4095: u64,
+    /// Those that are no byte written in 16 bits, which is 257 times the byte.
+    uneven: u64,
 }
 
 impl Tally {
@@ -44,6 +46,7 @@ impl Tally {
         self.over_1 += u64::from(value > 1.0);
         self.over_255 += u64::from(value > 255.0);
         self.over_4095 += u64::from(value > 4095.0);
+        self.uneven += u64::from(value % 257.0 != 0.0);
     }
 
     /// What the values are multiplied by to run to 255. One value in a hundred may be beyond, as rounding and
@@ -55,7 +58,7 @@ impl Tally {
             ColorRange::Unit | ColorRange::Harmonics => 255.0,
             ColorRange::Guess if unit => 255.0,
             _ if strays(self.over_255) => 1.0,
-            _ if self.over_4095 == 0 => 255.0 / 4095.0,
+            _ if self.over_4095 == 0 && self.uneven > 0 => 255.0 / 4095.0,
             _ => 1.0 / 257.0,
         }
     }

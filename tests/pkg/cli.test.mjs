@@ -319,12 +319,13 @@ test('every option of the package is a flag, with a word in the help', async (t)
   const { target, assignment, cells, ...reduction } = TABLES.reduce;
   const { distances, keep, ...fitting } = TABLES.reconstruct;
   const { name, format: from, beside, ...reading } = TABLES.read;
+  const { columns, delimiter, decimal, skip, sentinels, ...worded } = reading; // whose words stand beside their flags
   const { format, up, unit, ...writing } = TABLES.write;
   for (const key of Object.keys({ ...TARGETS, ...reduction, ...reading, ...writing, toUp: up, toUnit: unit })) {
     for (const help of [light, surface]) assert.match(help, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
   }
   for (const key of Object.keys(fitting)) assert.match(surface, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
-  assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...reading, ...writing, up, unit }).sort());
+  assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...worded, ...writing, up, unit }).sort());
 
   const line = 'reconstruct a.ply -o b.glb --flatness 0.001 --method paper --max-iterations 7 --norm diagonal --curvature-weight 0 ' +
     '--attributes label=majority --attributes a=b=nearest --outliers drop --accuracy 1e-3 --smoothing auto --resolution 0.02 --no-orient --sharp ' +

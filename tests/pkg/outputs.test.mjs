@@ -221,7 +221,7 @@ test('STL', async () => {
 
   const error = await rejection(write(points, { format: 'stl' }));
   assert.equal(error.code, 'needs-triangles');
-  assert.match(error.message, /holds triangles, and there are none/);
+  assert.match(error.message, /hold triangles, and there are none/);
 });
 
 test('PLY', async () => {
