@@ -80,6 +80,7 @@ pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     Ok(object.into())
 }
 
+#[cfg(not(feature = "pictures"))]
 pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
     value
         .as_ref()
