@@ -20,7 +20,7 @@ test('native and wasm agree to a millionth of the diagonal', async (t) => {
     const root = new URL('../..', import.meta.url);
     execFileSync('cargo', run, { cwd: root, stdio: ['ignore', 'ignore', 'inherit'] });
 
-    const native = await engine.read(readFileSync(output), { name: 'mesh.ply' });
+    const native = await engine.read(readFileSync(output), { name: 'mesh.ply', faces: 'vertices' });
     const wasm = await engine.reconstruct({ positions: Float64Array.from(scan.positions), colors: scan.colors });
     const { diagonal } = await engine.inspect(scan);
     assert.equal(native.positions.length, wasm.positions.length, `${model}: vertices`);
