@@ -174,12 +174,12 @@ test('views and colours of a sphere whose left half is rough', { timeout: PATIEN
 });
 
 test('a mesh larger than its scan is seen whole, until somebody has looked around', { timeout: PATIENCE }, async (t) => {
-  // Eight corners: the mesh goes far beyond them.
-  const corners = Array.from({ length: 8 }, (_, i) => [i & 1, (i >> 1) & 1, i >> 2]);
+  // Points all over a cube: the mesh goes beyond them.
+  const corners = Array.from({ length: 80 }, (_, i) => [((i * 37) % 61) / 61, ((i * 53) % 67) / 67, ((i * 71) % 73) / 73]);
   const obj = `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\n`;
   const site = await openScan(t, 'corners.obj', Buffer.from(obj));
   const { page } = site;
-  assert.equal(await page.innerText('#caption-detail'), '8 points');
+  assert.equal(await page.innerText('#caption-detail'), '80 points');
   assert.match(await page.innerText('#doubt'), /not close to the points/);
   const inside = (picture) => {
     const { box, width, height } = silhouette(picture);
@@ -191,7 +191,7 @@ test('a mesh larger than its scan is seen whole, until somebody has looked aroun
   const near = await site.picture();
   await site.remade(async () => {
     await page.click('#more > summary');
-    await page.uncheck('#option-sharp');
+    await page.check('#option-flip');
   });
   assert.ok(silhouette(await site.picture()).area > 0.9 * silhouette(near).area, 'the person has chosen the distance');
   assert.deepEqual(site.faults, []);
