@@ -28,6 +28,8 @@
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+// Who changes a stage reads its docs with `--document-private-items`; for who calls it such names are text.
+#![allow(rustdoc::private_intra_doc_links)]
 // Of the base, what only stages call.
 #![cfg_attr(not(feature = "stages"), allow(dead_code))]
 
