@@ -1,4 +1,4 @@
-//! What an extraction starts from, an implicit function, and what it makes, a mesh.
+//! The input and the output of an extraction: [`Implicit`], the function, and [`Mesh`].
 
 use glam::{DVec3, Vec3};
 

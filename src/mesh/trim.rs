@@ -1,4 +1,4 @@
-//! What is kept of the dual mesh: no sheets that no point supports, one fan around each vertex.
+//! Trims the dual mesh: leaves out sheets that no point supports, and makes one fan around each vertex.
 //!
 //! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
 

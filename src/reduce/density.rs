@@ -1,4 +1,4 @@
-//! How many points the surface deserves where: the wanted spacing of the reduced points.
+//! The density of the reduced points: their wanted spacing at every place of the surface.
 //!
 //! 1. Curvature asks for a density ρ ∝ κ^α. Against the largest error of a piecewise linear surface α = 1 is best,
 //!    against the rms error 2/3 (Clark, *Proc. SIGGRAPH* 1976 onwards; d'Azevedo and Simpson, 1991); α = ½ was the best

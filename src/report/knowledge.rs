@@ -1,4 +1,4 @@
-//! What may not be as it should: doubts.
+//! [`Doubt`]s: what may be wrong with a result, as codes for programs and sentences for people.
 
 use crate::orient::account::{Account, Source};
 use serde::Serialize;
