@@ -69,7 +69,10 @@ pub(crate) fn trim_rims(
     let shows_back = |quad: &Quad| {
         let [a, b, c, d] = quad.vertices.map(|v| dual.vertices[v as usize].position);
         let nearest = tree.nearest((a + b + c + d) * 0.25).index as usize;
-        (c - a).cross(d - b).dot(sensor(tree.order[nearest] as usize)) < 0.0
+        (c - a)
+            .cross(d - b)
+            .dot(sensor(tree.order[nearest] as usize))
+            < 0.0
     };
     let mut is_far = |quad: &Quad| {
         let beyond = |v: u32| {
