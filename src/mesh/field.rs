@@ -37,6 +37,8 @@ pub struct Field<'a> {
     winding: Winding<'a>,
     /// Value that stands for one whole turn of the winding number.
     depth: f64,
+    /// See [`Implicit::sensor`]; empty where no sensor is known.
+    sensor: &'a [Vec3],
     /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
     solid: bool,
 }
@@ -68,7 +70,12 @@ struct Part<const N: usize> {
 
 impl<'a> Field<'a> {
     /// Joins the functions. Cost: n log n.
-    pub fn new(fits: &'a Fits, signs: &'a Signs, sites: &'a Sites) -> Field<'a> {
+    pub fn new(
+        fits: &'a Fits,
+        signs: &'a Signs,
+        sites: &'a Sites,
+        sensor: &'a [Vec3],
+    ) -> Field<'a> {
         let tree = &sites.tree;
         let mut owner = vec![u32::MAX; tree.points.len()];
         for (s, subdomain) in fits.subdomains.iter().enumerate() {
@@ -103,6 +110,7 @@ impl<'a> Field<'a> {
             node_reach,
             winding: Winding::new(tree, &signs.normals, &sites.spacing),
             depth,
+            sensor,
             solid: false,
         };
         field.solid = field.is_solid(signs, sites);
@@ -249,6 +257,10 @@ impl Implicit for Field<'_> {
                 found[k] = (!value[l].is_nan()).then(|| (f64::from(value[l]), slope));
             }
         });
+    }
+
+    fn sensor(&self, point: usize) -> Vec3 {
+        self.sensor.get(point).copied().unwrap_or_default()
     }
 }
 

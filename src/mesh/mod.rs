@@ -92,7 +92,7 @@ pub struct Extracted {
 ///
 /// Where no fitted function reaches,
 /// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
-///   in a cell with an unreached corner;
+///   in a cell with an unreached corner, and near its rims none that shows the back to [`Implicit::sensor`];
 /// - `Closed`: like `Open`, and then each rim is capped by a membrane, which is flat where the rim is; nothing else moves;
 /// - `Auto`: unreached corners take [`Implicit::global`], then each cap for itself stays or goes, by how far it is from the
 ///   points and how it turns ([`holes`]). Closing stops once it takes more cells than the rest of the surface; components
@@ -127,7 +127,9 @@ pub fn extract<F: Implicit>(
         open,
         mut holes,
     } = decide_holes(&mut dual, params.boundary, (points, reach), params.max_hole);
-    trim_rims(&mut dual, points, reach);
+    trim_rims(&mut dual, (points, reach), params.resolution, |i| {
+        field.sensor(i)
+    });
     split_bow_ties(&mut dual);
     drop_phantoms(&mut dual, points, reach);
     let Triangulated {

@@ -24,6 +24,11 @@ pub trait Implicit: Sync {
         found: &mut [Option<(f64, DVec3)>],
         scratch: &mut Self::Scratch,
     );
+
+    /// A vector that points from a fitted point to the sensor that saw it; zero where none is known.
+    fn sensor(&self, _point: usize) -> Vec3 {
+        Vec3::ZERO
+    }
 }
 
 /// A triangle mesh in the unit frame.

@@ -166,15 +166,17 @@ fn surface(
     let few = few::mesh(&sites.tree.points);
     // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
     let inward = few.is_none() && signs.look_inward(&sites);
+    let mut sensor = evidence.sensor(&signs.account);
     if inward {
         signs.invert();
+        sensor.iter_mut().for_each(|v| *v = -*v);
     }
     let Extracted {
         mut mesh, holes, ..
     } = match few {
         Some(few) => few.placed((&sites, &mut signs), (params.orient, params.boundary)),
         None => {
-            let field = Field::new(&fits, &signs, &sites);
+            let field = Field::new(&fits, &signs, &sites, &sensor);
             let how = extract_params(&sites, params);
             extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
         }
