@@ -13,6 +13,7 @@ use crate::base::progress::{Progress, Stage};
 use crate::base::sort_keys::{key, pack, unpack};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
+use crate::features::opposite::across;
 use glam::Vec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -32,8 +33,12 @@ pub struct Sites {
     pub noise: f32,
     /// Whether the normals' signs are the caller's and to be kept.
     pub oriented: bool,
+    /// From each site straight across to the opposite sheet, where one is within its reach; else zero.
+    pub across: Vec<Vec3>,
 }
 
+/// Reach of a site in spacings: the ball holds about 16 sites of the sheet, so that no gap of the sampling is left out.
+pub(crate) const REACH: f32 = 2.2;
 /// A site's spacing is at most this times the median of its neighbours': a straggler far from the surface has neighbours
 /// on it, and must not reach as far as it is lonely.
 const MOST_SPACING: f32 = 1.5;
@@ -67,11 +72,22 @@ impl Sites {
             graph,
             noise,
             oriented,
+            across: Vec::new(),
         };
         if !oriented {
             sites.mend_normals();
         }
+        sites.across = par::map(sites.spacing.len(), Vec::new, |i, steps| {
+            let within = (REACH * sites.spacing[i], noise);
+            across(&sites.tree, &sites.normals, i, within, steps)
+        });
         Ok(sites)
+    }
+
+    /// Distances to the opposite sheet, where one is near.
+    pub(crate) fn thickness(&self) -> impl Iterator<Item = f32> {
+        let across = self.across.iter().map(|d| d.length());
+        across.filter(|&t| t > 0.0)
     }
 
     /// Gives a site whose normal agrees with no neighbour's the one of theirs that agrees with the most: where two sheets
