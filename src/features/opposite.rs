@@ -12,9 +12,9 @@ const PARALLEL: f32 = 0.8;
 /// Smallest offset along the normals against the distance: 45° off the plane.
 const ACROSS: f32 = 0.7;
 /// Standard deviations of the noise that sheets are apart, at least: nearer ones cannot be told apart.
-const NOISE: f32 = 5.0;
-/// Points that make a sheet.
-const LEAST: usize = 2;
+const NOISE: f32 = 3.0;
+/// Points that make a sheet, and their share of all that are as far off the plane: within the noise of one sheet others are.
+const LEAST: (usize, f32) = (3, 0.5);
 /// The distance is the one that a quarter of the points are within: behind the opposite sheet there may be others.
 const NEAREST: usize = 4;
 
@@ -29,6 +29,7 @@ pub(crate) fn across(
 ) -> Vec3 {
     let (p, normal) = (tree.points[i], normals[i]);
     steps.clear();
+    let mut off = 0;
     if normal == Vec3::ZERO {
         return Vec3::ZERO;
     }
@@ -41,6 +42,7 @@ pub(crate) fn across(
             if own * own < ACROSS * ACROSS * length2 || length2 > radius * radius {
                 return;
             }
+            off += usize::from(j != i);
             let along = normal.dot(normals[j]);
             let other = normals[j].dot(d) * along.signum();
             let step = own.abs().min(other.abs());
@@ -53,7 +55,7 @@ pub(crate) fn across(
     let above = steps.iter().filter(|step| **step > 0.0).count();
     let side = if 2 * above > steps.len() { 1.0 } else { -1.0 };
     steps.retain(|step| step * side > 0.0);
-    if steps.len() < LEAST {
+    if steps.len() < LEAST.0 || (steps.len() as f32) < LEAST.1 * off as f32 {
         return Vec3::ZERO;
     }
     let at = steps.len() / NEAREST;

@@ -1,8 +1,9 @@
 //! Scatter: points of foliage, dust and filled volumes, through which there is no surface.
 //!
-//! 1. A point lies in a *volume* when its neighbours fill space at every scale, from 24 of them to 192. Those of a surface
-//!    lie flat at one of the scales at least: a noisy one, or the two sides of a thin wall, at a large one, a bent one at a
-//!    small one. Twigs and scan lines are long at one of them.
+//! 1. A point lies in a *volume* when its neighbours fill space at every scale, from 24 of them to 192, and grow in number as those
+//!    of a volume do. Those of a surface lie flat at one of the scales at least: a noisy one, or the two sides of a thin wall, at
+//!    a large one, a bent one at a small one. Twigs and scan lines are long at one of them. Where thin walls meet they are
+//!    neither, but four times as many take up twice the radius, where those of a volume take 1.6 times.
 //! 2. A point lies in a *clump* when its nearest, up to a dozen, are much nearer to it than all others.
 //! 3. One place alone says little, as a corner is like a volume, so the places around have a vote: a place is scatter when most
 //!    of them lie in volumes or clumps.
@@ -24,6 +25,8 @@ const SCALES: [usize; 4] = [24, 48, 96, 192];
 const BULK: f64 = 0.11;
 /// Share of the longest variance up to which the middle one is that of a line.
 const LINE: f64 = 0.1;
+/// Scales whose radii tell the dimension, and their ratio, squared, in 2.5 dimensions.
+const GROWTH: (usize, usize, f32) = (48, 192, 3.03);
 /// Sizes of a clump.
 const CLUMP: std::ops::RangeInclusive<usize> = 4..=12;
 /// A clump is this many times as far from everything else as it is wide.
@@ -71,7 +74,13 @@ fn is_alone(tree: &Octree, p: Vec3, noise2: f64, found: &mut Vec<Neighbor>) -> b
     }
     tree.knn(p, SCALES[SCALES.len() - 1], found);
     let scale = |&k: &usize| is_bulk(tree, p, &found[..k.min(found.len())], noise2);
-    SCALES[1..].iter().rev().all(scale)
+    SCALES[1..].iter().rev().all(scale) && fills(found)
+}
+
+/// Whether the number of these neighbours grows with the distance as in a volume.
+fn fills(found: &[Neighbor]) -> bool {
+    let (inner, outer, ratio) = GROWTH;
+    found.len() < outer || found[outer - 1].distance2 < ratio * found[inner - 1].distance2
 }
 
 /// Whether the nearest of these, nearest first, are much nearer than the others.
