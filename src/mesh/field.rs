@@ -4,7 +4,7 @@
 //! F(x) = Σ W_i(x) s_i f_i(x) / Σ W_i(x), with W_i(x) = Σ ψ(|x − p| / R_p) over the core sites p of sub-domain i, ψ
 //! Wendland's C² function and R_p the reach of the site. Weights that hang on sites rather than on boxes fall with the
 //! distance to the sheet, so that a thin wall's two sides hardly mix. Towards an opposite sheet that is within its reach a site
-//! reaches three quarters of the way.
+//! reaches no farther than that.
 //!
 //! Beyond all reaches F has no value. There the winding number of the oriented sites ([`crate::orient::winding`]) tells inside
 //! from outside and closes holes.
@@ -47,7 +47,7 @@ pub struct Field<'a> {
 
 /// Share of the distance to the opposite sheet that a site reaches towards it: both sheets together leave no gap between them,
 /// and neither says anything of the other.
-const TOWARDS: f32 = 0.75;
+const TOWARDS: f32 = 0.95;
 /// Σ W_i below which functions are asked beyond their sites, more than about 1.3 spacings away from all: what they say of
 /// inside and outside must not contradict the winding number. At 0.5 to 1.5 lobes that grow out of sparse and noisy parts
 /// are gone (rms errors of four models that the bench does not use: 18 % less); farther in creases suffer.
