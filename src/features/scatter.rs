@@ -20,13 +20,13 @@ use glam::{DVec3, Vec3};
 
 /// Neighbours at each scale.
 const SCALES: [usize; 4] = [24, 48, 96, 192];
-/// Surface variation from which neighbours fill space. A crease at a right angle has 0.09, a plate as thick as 1.5 spacings 0.07
-/// at the largest scale, even volumes 0.2 to 0.3.
-const BULK: f64 = 0.11;
+/// Surface variation from which neighbours fill space, and at the largest scale, where thin plates are told. A crease at a right
+/// angle has 0.09, a plate as thick as 2.5 spacings 0.1 at the largest scale, even volumes 0.2 to 0.3, their ends 0.13.
+const BULK: (f64, f64) = (0.07, 0.11);
 /// Share of the longest variance up to which the middle one is that of a line.
 const LINE: f64 = 0.1;
-/// Scales whose radii tell the dimension, and their ratio, squared, in 2.5 dimensions.
-const GROWTH: (usize, usize, f32) = (48, 192, 3.03);
+/// Scales whose radii tell the dimension, and their ratio, squared, in 2.45 dimensions.
+const GROWTH: (usize, usize, f32) = (24, 96, 3.1);
 /// Sizes of a clump.
 const CLUMP: std::ops::RangeInclusive<usize> = 4..=12;
 /// A clump is this many times as far from everything else as it is wide.
@@ -69,12 +69,13 @@ fn is_alone(tree: &Octree, p: Vec3, noise2: f64, found: &mut Vec<Neighbor>) -> b
     if in_clump(found) {
         return true;
     }
-    if !is_bulk(tree, p, found, noise2) {
+    if !is_bulk(tree, p, found, (BULK.0, 0.0)) {
         return false;
     }
     tree.knn(p, SCALES[SCALES.len() - 1], found);
-    let scale = |&k: &usize| is_bulk(tree, p, &found[..k.min(found.len())], noise2);
-    SCALES[1..].iter().rev().all(scale) && fills(found)
+    let scale = |&k: &usize| is_bulk(tree, p, &found[..k.min(found.len())], (BULK.0, 0.0));
+    // The noise counts where the neighbours reach beyond it.
+    fills(found) && is_bulk(tree, p, found, (BULK.1, noise2)) && SCALES[1..3].iter().all(scale)
 }
 
 /// Whether the number of these neighbours grows with the distance as in a volume.
@@ -90,7 +91,7 @@ fn in_clump(found: &[Neighbor]) -> bool {
 }
 
 /// Whether these neighbours of `p` lie neither flat, but for the noise, nor along a line.
-fn is_bulk(tree: &Octree, p: Vec3, found: &[Neighbor], noise2: f64) -> bool {
+fn is_bulk(tree: &Octree, p: Vec3, found: &[Neighbor], (bulk, noise2): (f64, f64)) -> bool {
     let from_here = |n: &Neighbor| (tree.points[n.index as usize] - p).as_dvec3();
     let count = found.len() as f64;
     let mean = found.iter().map(from_here).sum::<DVec3>() / count;
@@ -102,7 +103,7 @@ fn is_bulk(tree: &Octree, p: Vec3, found: &[Neighbor], noise2: f64) -> bool {
         }
     }
     let [thin, middle, long] = sym_eigen(&covariance).values;
-    thin - noise2 > BULK * (thin + middle + long) && middle > LINE * long
+    thin - noise2 > bulk * (thin + middle + long) && middle > LINE * long
 }
 
 #[cfg(test)]

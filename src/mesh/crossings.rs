@@ -299,14 +299,16 @@ mod tests {
 
     #[test]
     fn folds_are_opened_and_nothing_else_moves() {
-        let mut mesh = sheet(20, |x, y| 0.1 * x * y);
+        let mut mesh = both(
+            sheet(20, |x, y| 0.1 * x * y),
+            &sheet(20, |x, y| 0.1 * x * y + 0.03),
+        );
         let before = mesh.clone();
         assert_eq!(mend(&mut mesh), 0);
         assert_eq!(mesh, before);
-        // A vertex that was drawn over its neighbours' triangles and below them.
+        // A vertex that goes through the sheet above.
         let folded = 10 * 21 + 10;
-        mesh.vertices[folded] += Vec3::new(0.12, 0.01, -0.02);
-        mesh.vertices[folded + 1] += Vec3::new(-0.08, 0.0, -0.01);
+        mesh.vertices[folded] += Vec3::new(0.012, 0.007, 0.08);
         assert!(!crossing(&mesh, None).is_empty());
         assert_eq!(mend(&mut mesh), 0);
         let far = |i: usize| before.vertices[i].distance(before.vertices[folded]) > 0.3;
