@@ -20,8 +20,10 @@
 
 pub(crate) mod filter;
 pub(crate) mod noise;
+pub(crate) mod opposite;
 pub mod outliers;
 pub(crate) mod planes;
+pub(crate) mod scatter;
 pub(crate) mod steps;
 pub(crate) mod values;
 

@@ -9,6 +9,7 @@
 //!    (see [`extract`]).
 //! 4. `simplify`: fewer triangles where the surface is flat.
 //! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 6. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -26,6 +27,7 @@ pub(crate) mod band;
 pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
+pub(crate) mod crossings;
 pub(crate) mod disc;
 pub(crate) mod dual;
 pub(crate) mod few;
@@ -82,6 +84,10 @@ pub struct Extracted {
     pub open: usize,
     /// Holes that were closed and rims that were left open, the widest first.
     pub holes: Vec<Hole>,
+    /// Triangles that cross others, after what could be mended was.
+    pub crossings: usize,
+    /// Share of the points (0-1) that were nearest to pieces that were left out as too small.
+    pub dropped: f64,
 }
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
@@ -131,7 +137,7 @@ pub fn extract<F: Implicit>(
         field.sensor(i)
     });
     split_bow_ties(&mut dual);
-    drop_phantoms(&mut dual, points, reach);
+    let dropped = drop_phantoms(&mut dual, points, reach);
     let Triangulated {
         mut mesh,
         on_crease,
@@ -152,6 +158,7 @@ pub fn extract<F: Implicit>(
         closed: if closes { open } else { closed },
         open: if closes { 0 } else { open },
         holes,
+        dropped,
         ..extracted
     })
 }
@@ -171,10 +178,12 @@ impl Extracted {
         } else {
             0.0
         };
+        let crossings = crossings::mend(&mut mesh);
         Extracted {
             mesh,
             filled,
             holes,
+            crossings,
             ..Default::default()
         }
     }

@@ -127,18 +127,19 @@ pub(crate) fn trim_rims(
 
 /// Drops components that are no part of the surface: those that are the nearest one to fewer than [`LEAST_POINTS`] points
 /// (the one with the most points stays), and second layers: pieces with an end that stand for less than [`LAYER_POINTS`] of
-/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such.
-pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such. Returns
+/// the share of the points that were nearest to what was dropped.
+pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) -> f64 {
     let (of, count) = components(dual);
     let used = || {
         let vertices = dual.vertices.iter().zip(&of);
         vertices.filter(|(vertex, _)| vertex.quads > 0)
     };
     let Some((_, first)) = used().next() else {
-        return;
+        return 0.0;
     };
     if used().all(|(_, component)| component == first) {
-        return;
+        return 0.0;
     }
     let (positions, component_of): (Vec<Vec3>, Vec<u32>) = used()
         .map(|(vertex, &component)| (vertex.position, component))
@@ -174,6 +175,8 @@ pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         }
     }
     dual.retain(|quad| !dropped[of[quad.vertices[0] as usize] as usize]);
+    let left_out = votes.iter().zip(&dropped).filter(|(_, dropped)| **dropped);
+    left_out.map(|(&votes, _)| f64::from(votes)).sum::<f64>() / points.len() as f64
 }
 
 /// How many points each of `count` components is the nearest one to.

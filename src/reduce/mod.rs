@@ -32,6 +32,7 @@ pub mod shares;
 mod stats;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
+pub(crate) mod walls;
 
 use std::ops::Range;
 
