@@ -19,7 +19,9 @@ pub use crate::mesh::holes::Hole;
 pub use crate::mesh::topology::{Topology, area, topology, volume};
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
-pub(crate) use knowledge::{doubts, doubts_of_faces, doubts_of_shape, doubts_of_steps};
+pub(crate) use knowledge::{
+    doubts, doubts_of_faces, doubts_of_lines, doubts_of_shape, doubts_of_steps,
+};
 
 /// Mean, root mean square and maximum of distances.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
