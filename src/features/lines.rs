@@ -15,14 +15,21 @@ use crate::base::linalg::{outer, sym_eigen};
 use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
-use crate::features::noise::Scales;
+use crate::features::noise::{Scales, quantile};
 use crate::features::values::Features;
 use glam::{DVec3, Vec3};
+use nalgebra::{SMatrix, SVector};
 
 /// Least ratio of the second eigenvalue to the first of neighbours that spread in two directions.
 const SPREAD: f64 = 0.25;
-/// Neighbours that are asked at first, by how much more then, and at most.
-const NEIGHBORS: [usize; 3] = [8, 64, 512];
+/// Neighbours that are asked at first, and then where these are on a line.
+const NEIGHBORS: [usize; 3] = [64, 160, 512];
+/// Neighbours that are looked at for their spread, at least.
+const FEWEST: usize = 8;
+/// Points of a line around one that tell the noise.
+const ON_LINE: usize = 9;
+/// Points that are close together and have one reach.
+const TOGETHER: usize = 8;
 /// Points that are asked whether there are lines.
 const ASKED: usize = 2048;
 /// Share of the points that must be on lines, and how many points their reach then holds at least: lines six times as far
@@ -46,6 +53,8 @@ pub(crate) struct Thinned {
     pub(crate) place_of: Vec<u32>,
     /// Share of the points that are on lines.
     share: f32,
+    /// Standard deviation of the points' noise.
+    noise: f32,
 }
 
 impl Thinned {
@@ -63,10 +72,14 @@ impl Thinned {
     /// The places of a cloud that has lines.
     pub(crate) fn along_lines(tree: &Octree) -> Thinned {
         let n = tree.points.len();
-        let pitch = par::map(n, Vec::new, |i, found| match reach(tree, i, found) {
-            Some((k, radius)) if k > THINNED => PITCH * radius,
-            _ => 0.0,
+        let some = par::map(n.div_ceil(TOGETHER), Vec::new, |c, found| {
+            let middle = (c * TOGETHER + TOGETHER / 2).min(n - 1);
+            match reach(tree, middle, found) {
+                Some((k, radius)) if k > THINNED => PITCH * radius,
+                _ => 0.0,
+            }
         });
+        let pitch: Vec<f32> = (0..n).map(|i| some[i / TOGETHER]).collect();
         let share = pitch.iter().filter(|&&p| p > 0.0).count() as f32 / n.max(1) as f32;
         let kept = kept(tree, &pitch);
         let place_of = par::map(n, Vec::new, |i, found: &mut Vec<u32>| {
@@ -82,7 +95,13 @@ impl Thinned {
             places: sums.iter().map(|(sum, n)| (*sum / *n).as_vec3()).collect(),
             place_of,
             share,
+            noise: noise_of_lines(tree),
         }
+    }
+
+    /// What is left of the noise in the mean of a place, mostly.
+    pub(crate) fn noise_of_places(&self) -> f32 {
+        self.noise * (self.places.len() as f32 / self.place_of.len() as f32).sqrt()
     }
 
     /// What the points know from what was measured of the places, whose octree is `places`: a point has its share of its
@@ -96,7 +115,7 @@ impl Thinned {
         for &place in &self.place_of {
             counts[place as usize] += 1.0;
         }
-        let noise = self.noise(tree, (places, &at), of, &counts);
+        let noise = self.noise;
         let spacing_of = |i: usize| {
             let place = self.place_of[i] as usize;
             of.spacing[at[place] as usize] / counts[place].sqrt()
@@ -118,31 +137,10 @@ impl Thinned {
             curvature: n.clone().map(|i| of.curvature[place(i)]).collect(),
             variation: n.map(|i| of.variation[place(i)]).collect(),
             residual: told.iter().map(|t| t.1).collect(),
-            noise,
+            noise: noise.max(of.steps),
             steps: of.steps,
             lines: self.share,
         }
-    }
-
-    /// Noise of the points: the mean of a place has less of it, but how the points of one place stand off their mean is no more
-    /// than it, either.
-    fn noise(
-        &self,
-        tree: &Octree,
-        (places, at): (&Octree, &[u32]),
-        of: &Features,
-        counts: &[f32],
-    ) -> f32 {
-        let (mut squares, mut free) = (0.0f64, 0.0f64);
-        for (p, &place) in tree.points.iter().zip(&self.place_of) {
-            let k = at[place as usize] as usize;
-            let count = f64::from(counts[place as usize]);
-            squares += f64::from(of.normals[k].dot(*p - places.points[k])).powi(2);
-            free += (count - 1.0) / count;
-        }
-        let mean = self.place_of.len() as f32 / counts.len().max(1) as f32;
-        let within = (squares / free.max(1.0)).sqrt() as f32;
-        (of.noise * mean.sqrt()).min(within).max(of.noise)
     }
 }
 
@@ -174,14 +172,15 @@ fn told(p: Vec3, places: &Octree, of: &Features, near: &[Neighbor]) -> (Vec3, f3
     (normal, offset / weights.max(f32::MIN_POSITIVE))
 }
 
-/// How many neighbours spread in two directions, and the distance of the last of them; `None` where they never do.
-pub fn reach(tree: &Octree, i: usize, found: &mut Vec<Neighbor>) -> Option<(usize, f32)> {
+/// How many neighbours spread in two directions, and still do when they are twice as many, as those of a noisy line do not;
+/// and the distance of the last of them. `None` where they never do.
+fn reach(tree: &Octree, i: usize, found: &mut Vec<Neighbor>) -> Option<(usize, f32)> {
     let p = tree.points[i];
-    let [first, more, most] = NEIGHBORS;
-    for asked in [more, most] {
+    for asked in NEIGHBORS {
         tree.knn(p, asked, found);
         let (mut sum, mut squares) = (DVec3::ZERO, [0.0; 6]);
-        let mut next = first;
+        let mut next = FEWEST;
+        let mut since = None;
         for (k, near) in found.iter().enumerate() {
             let d = (tree.points[near.index as usize] - p).as_dvec3();
             sum += d;
@@ -196,15 +195,68 @@ pub fn reach(tree: &Octree, i: usize, found: &mut Vec<Neighbor>) -> Option<(usiz
             let mean = outer(sum / count);
             let covariance = std::array::from_fn(|a| squares[a] / count - mean[a]);
             let [_, middle, long] = sym_eigen(&covariance).values;
-            if middle >= SPREAD * long && long > 0.0 {
-                return Some((k + 1, near.distance2.sqrt()));
+            if middle < SPREAD * long || long == 0.0 {
+                since = None;
+                continue;
+            }
+            let (first, radius) = *since.get_or_insert((k + 1, near.distance2.sqrt()));
+            if k + 1 >= 2 * first {
+                return Some((first, radius));
             }
         }
         if found.len() < asked {
-            return None;
+            return since;
         }
     }
     None
+}
+
+/// Noise of points on lines: what they stand off the parabola through those next to them on their line. Whatever bends the
+/// line more slowly is detail.
+fn noise_of_lines(tree: &Octree) -> f32 {
+    let n = tree.points.len();
+    let step = n.div_ceil(ASKED).max(1);
+    let off = par::map(
+        n.div_ceil(step),
+        Vec::new,
+        |i, found: &mut Vec<Neighbor>| {
+            let p = tree.points[i * step];
+            tree.knn(p, ON_LINE, found);
+            let near = || {
+                let each = found.iter();
+                each.map(|n| (tree.points[n.index as usize] - p).as_dvec3())
+            };
+            let count = found.len() as f64;
+            let mean = near().sum::<DVec3>() / count;
+            let mut covariance = [0.0; 6];
+            for d in near() {
+                for (sum, product) in covariance.iter_mut().zip(outer(d - mean)) {
+                    *sum += product;
+                }
+            }
+            let eigen = sym_eigen(&covariance);
+            let along = eigen.vectors[2];
+            let scale = eigen.values[2].sqrt().max(f64::MIN_POSITIVE);
+            // The parabola at the point itself, where s = 0.
+            let mut parabola = SMatrix::<f64, 3, 3>::identity() * 1e-9;
+            let mut right = SMatrix::<f64, 3, 3>::zeros();
+            for d in near() {
+                let s = d.dot(along) / scale;
+                let row = SVector::<f64, 3>::new(1.0, s, s * s);
+                parabola += row * row.transpose();
+                right += row * SVector::<f64, 3>::from(d.to_array()).transpose();
+            }
+            let Some(inverse) = parabola.try_inverse() else {
+                return 0.0;
+            };
+            let at = (inverse * right).row(0).transpose();
+            let at = DVec3::new(at[0], at[1], at[2]).reject_from_normalized(along);
+            let free = (1.0 - inverse[(0, 0)]).max(0.1);
+            (at.length() / free.sqrt()) as f32
+        },
+    );
+    // The lower quartile of the absolute value of a normal variable is 0.3186 of its standard deviation.
+    quantile(off, 4) / 0.3186
 }
 
 /// Which points are kept: none within the pitch of one before it.

@@ -94,17 +94,22 @@ impl Features {
     ) -> Result<Features> {
         let steps = steps::noise(tree, eye);
         let Some(thinned) = Thinned::of(tree) else {
-            return Features::measure_even(tree, steps, progress);
+            return Features::measure_even(tree, (steps, f32::INFINITY), progress);
         };
         let places = Octree::build(&thinned.places);
-        let of_places = Features::measure_even(&places, steps, progress)?;
+        let noise = (steps, thinned.noise_of_places().max(steps));
+        let of_places = Features::measure_even(&places, noise, progress)?;
         Ok(thinned.features(tree, &places, &of_places))
     }
 
-    /// Of points whose nearest are around them.
-    fn measure_even(tree: &Octree, steps: f32, progress: &mut dyn Progress) -> Result<Features> {
+    /// Of points whose nearest are around them. Their noise is at least that of `steps` and no more than `most`.
+    fn measure_even(
+        tree: &Octree,
+        (steps, most): (f32, f32),
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
         let cells = tree.cut(|node| node.range().len() <= CELL);
-        let scales = Scales::measure(tree).at_least(steps);
+        let scales = Scales::measure(tree).at_most(most).at_least(steps);
         let mut part = Part::new(progress, 0.0..0.4);
         let n = tree.points.len();
         let planes: Vec<Plane> = par::flat_map_progress(

@@ -39,6 +39,8 @@ pub struct Field<'a> {
     depth: f64,
     /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
     solid: bool,
+    /// Of the sites.
+    noise: f64,
 }
 
 /// Reach in spacings: the ball holds about 16 sites of the sheet, so that no gap of the sampling is left out.
@@ -104,6 +106,7 @@ impl<'a> Field<'a> {
             winding: Winding::new(tree, &signs.normals, &sites.spacing),
             depth,
             solid: false,
+            noise: sites.noise.into(),
         };
         field.solid = field.is_solid(signs, sites);
         field
@@ -225,6 +228,10 @@ impl<'a> Field<'a> {
 impl Implicit for Field<'_> {
     /// Positions in single precision.
     type Scratch = Vec<Vec3>;
+
+    fn noise(&self) -> f64 {
+        self.noise
+    }
 
     fn scratch(&self) -> Vec<Vec3> {
         Vec::new()

@@ -1,7 +1,7 @@
 //! Section 6: scan lines, much farther apart than their points.
 
 use crate::measure::{mark, surface};
-use glam::{DVec3, Vec3, dvec3};
+use glam::{DVec3, dvec3};
 use pointweave::base::rng::Rng;
 use pointweave::cloud::octree::Octree;
 use pointweave::{Surface, SurfaceParams};
