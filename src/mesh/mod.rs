@@ -135,12 +135,13 @@ pub fn extract<F: Implicit>(
     drop_phantoms(&mut dual, points, reach);
     let Triangulated {
         mut mesh,
-        on_crease,
+        mut on_crease,
         at_end,
         creases,
     } = triangulate(dual);
     rims::smooth(&mut mesh, &at_end);
-    straighten(&mut mesh, &creases, params.resolution, field.noise());
+    let scale = (params.resolution, field.noise());
+    straighten(&mut mesh, &creases, &mut on_crease, scale);
     let mut span = span(progress, 0.75, 1.0);
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;

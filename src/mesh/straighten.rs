@@ -6,7 +6,8 @@
 //! 1. Around each vertex a line or a parabola is fitted to what the cells along the crease found, over a length that follows
 //!    the noise, as long as several sub-domains (moving least squares: D. Levin, "Mesh-independent surface interpolation",
 //!    2003).
-//! 2. The vertex moves there, across the crease only, unless a triangle would turn over.
+//! 2. Between such vertices the crease runs on: where the surface is cut off there, the nearest vertices go onto it as well.
+//! 3. The vertex moves there, across the crease only, unless a triangle would turn over.
 
 use crate::base::par;
 use crate::cloud::octree::Octree;
@@ -34,6 +35,14 @@ const BOTH_SIDES: f64 = 0.3;
 const ODD: f64 = 2.0;
 /// Largest move in edges.
 const FARTHEST: f64 = 1.0;
+/// Half of the length over which cells tell where a crease runs that others cut off, in edges.
+const GAP: f64 = 8.0;
+/// The surface turns from one side of a crease to the other where normals of neighbours do by more than this (cosine of 25°).
+const TURN: f32 = 0.906;
+/// What cuts a crease off is no farther from it than this, in edges, and from the next vertex along it no nearer than that.
+const BESIDE: f64 = 0.7;
+/// See [`BESIDE`].
+const APART: f64 = 0.5;
 /// Least cosine between a triangle's normals before and after: 60°.
 const TURNED: f64 = 0.5;
 /// Squared sine of the least angle of a moved triangle, unless it had a smaller one: 5°.
@@ -51,8 +60,14 @@ pub(crate) struct OnCrease {
     pub(crate) normal: Vec3,
 }
 
-/// Moves the vertices of a mesh onto their creases. `edge` is the edge length of the lattice, `noise` that of the surface.
-pub(crate) fn straighten(mesh: &mut Mesh, creases: &[OnCrease], edge: f64, noise: f64) {
+/// Moves the vertices of a mesh onto their creases, and those between them that cut a crease off; marks all as `on_crease`.
+/// `edge` is the edge length of the lattice, `noise` that of the surface.
+pub(crate) fn straighten(
+    mesh: &mut Mesh,
+    creases: &[OnCrease],
+    on_crease: &mut [bool],
+    (edge, noise): (f64, f64),
+) {
     if creases.is_empty() {
         return;
     }
@@ -66,21 +81,81 @@ pub(crate) fn straighten(mesh: &mut Mesh, creases: &[OnCrease], edge: f64, noise
             return own.point;
         }
         let curve = Samples::of(own, creases, (&tree, length, edge), found);
-        curve
-            .and_then(|samples| samples.at_middle())
-            .map_or(own.point, |at| at.as_vec3())
+        let at = curve.and_then(|samples| samples.at_middle());
+        at.map_or(own.point, |at| at.as_vec3())
     });
     let around = vertex_triangles(mesh);
     for (own, target) in creases.iter().zip(targets) {
+        on_crease[own.vertex as usize] = true;
         let v = own.vertex as usize;
         if f64::from(target.distance(mesh.vertices[v])) <= FARTHEST * edge {
             move_to(mesh, &around, own.vertex, target);
         }
     }
+    let length = length.max(GAP * edge);
+    let mut beside = cut_off(mesh, creases, on_crease, (&tree, length, edge));
+    beside.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.vertex.cmp(&b.1.vertex)));
+    for (_, at) in beside {
+        // One vertex a place along the crease is enough.
+        let taken = around.of(at.vertex).iter().any(|&t| {
+            let others = mesh.triangles[t as usize].into_iter();
+            others.filter(|&w| on_crease[w as usize]).any(|w| {
+                let apart = mesh.vertices[w as usize] - at.point;
+                f64::from(apart.dot(at.along).abs()) < APART * edge
+            })
+        });
+        if !taken && move_to(mesh, &around, at.vertex, at.point) {
+            on_crease[at.vertex as usize] = true;
+        }
+    }
 }
 
-/// Moves a vertex, by half of the way or not at all where a triangle would turn over.
-fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) {
+/// Vertices beside a crease, where the surface turns from one of its sides to the other but no cell found it: how far from it,
+/// and where it runs, between cells that did find it.
+fn cut_off(
+    mesh: &Mesh,
+    creases: &[OnCrease],
+    on_crease: &[bool],
+    (tree, length, edge): (&Octree, f64, f64),
+) -> Vec<(f32, OnCrease)> {
+    let mut turns = vec![false; mesh.vertices.len()];
+    for t in &mesh.triangles {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            let [n, m] = [a, b].map(|v| mesh.normals[v as usize]);
+            if n.dot(m) < TURN {
+                turns[a as usize] = true;
+                turns[b as usize] = true;
+            }
+        }
+    }
+    let is_free = |v: &u32| turns[*v as usize] && !on_crease[*v as usize];
+    let free: Vec<u32> = (0..turns.len() as u32).filter(is_free).collect();
+    let found = par::map(free.len(), Vec::new, |k, found| {
+        let vertex = free[k];
+        let point = mesh.vertices[vertex as usize];
+        let nearest = &creases[tree.order[tree.nearest(point).index as usize] as usize];
+        if nearest.along == Vec3::ZERO {
+            return None;
+        }
+        let own = OnCrease {
+            vertex,
+            point,
+            ..*nearest
+        };
+        let samples = Samples::of(&own, creases, (tree, length, edge), found)?;
+        if !samples.is_between() {
+            return None;
+        }
+        let point = samples.at_middle()?.as_vec3();
+        let away = point.distance(mesh.vertices[vertex as usize]);
+        let near = f64::from(away) <= BESIDE * edge;
+        near.then_some((away, OnCrease { point, ..own }))
+    });
+    found.into_iter().flatten().collect()
+}
+
+/// Moves a vertex, by half of the way or not at all where a triangle would turn over; whether it moved.
+fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) -> bool {
     let from = mesh.vertices[v as usize];
     for share in [1.0, 0.5] {
         let to = from + share * (target - from);
@@ -96,9 +171,10 @@ fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) {
         });
         if stays {
             mesh.vertices[v as usize] = to;
-            return;
+            return true;
         }
     }
+    false
 }
 
 fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
@@ -171,6 +247,12 @@ impl Samples {
             weights,
             length,
         })
+    }
+
+    /// Whether the crease was found on both sides along it.
+    fn is_between(&self) -> bool {
+        let beyond = |side: f64| self.at.iter().any(|a| side * a[0] > 0.0);
+        beyond(1.0) && beyond(-1.0)
     }
 
     /// Where the curve is next to the middle one.
@@ -311,10 +393,20 @@ mod tests {
             normal: Vec3::Z,
         };
         let mut mesh = fan(Vec3::ZERO);
-        straighten(&mut mesh, &[on(Vec3::new(0.3, 0.0, 0.2))], 1.0, 0.0);
+        straighten(
+            &mut mesh,
+            &[on(Vec3::new(0.3, 0.0, 0.2))],
+            &mut [false; 5],
+            (1.0, 0.0),
+        );
         assert_eq!(mesh.vertices[0], Vec3::new(0.3, 0.0, 0.2));
         let mut mesh = fan(Vec3::ZERO);
-        straighten(&mut mesh, &[on(Vec3::new(1.4, 0.0, 0.0))], 2.0, 0.0);
+        straighten(
+            &mut mesh,
+            &[on(Vec3::new(1.4, 0.0, 0.0))],
+            &mut [false; 5],
+            (2.0, 0.0),
+        );
         assert_eq!(mesh.vertices[0], Vec3::new(0.7, 0.0, 0.0));
     }
 }
