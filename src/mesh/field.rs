@@ -45,6 +45,8 @@ pub struct Field<'a> {
     sensor: &'a [Vec3],
     /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
     solid: bool,
+    /// Of the sites.
+    noise: f64,
 }
 
 /// Share of the distance to the opposite sheet that a site reaches towards it: both sheets together leave no gap between them,
@@ -128,6 +130,7 @@ impl<'a> Field<'a> {
             depth,
             sensor,
             solid: false,
+            noise: sites.noise.into(),
         };
         field.solid = field.is_solid(signs, sites);
         field
@@ -257,6 +260,10 @@ impl<'a> Field<'a> {
 impl Implicit for Field<'_> {
     /// Positions in single precision.
     type Scratch = Vec<Vec3>;
+
+    fn noise(&self) -> f64 {
+        self.noise
+    }
 
     fn scratch(&self) -> Vec<Vec3> {
         Vec::new()

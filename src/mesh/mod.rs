@@ -7,9 +7,10 @@
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
 //! 3. `holes`, `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends
 //!    (see [`extract`]).
-//! 4. `simplify`: fewer triangles where the surface is flat.
-//! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
-//! 6. `crossings`: triangles that cross each other are found and mended.
+//! 4. `straighten`: vertices on creases are moved onto the curves that several cells tell.
+//! 5. `simplify`: fewer triangles where the surface is flat.
+//! 6. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 7. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -38,6 +39,7 @@ pub(crate) mod loops;
 pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
+pub(crate) mod straighten;
 pub(crate) mod surface;
 pub mod topology;
 pub(crate) mod trim;
@@ -49,6 +51,7 @@ use crate::mesh::band::{grow, span};
 use crate::mesh::dual::{Dual, build};
 use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
+use crate::mesh::straighten::{OnCrease, straighten};
 use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
@@ -140,10 +143,13 @@ pub fn extract<F: Implicit>(
     let dropped = drop_phantoms(&mut dual, points, reach);
     let Triangulated {
         mut mesh,
-        on_crease,
+        mut on_crease,
         at_end,
+        creases,
     } = triangulate(dual);
     rims::smooth(&mut mesh, &at_end);
+    let scale = (params.resolution, field.noise());
+    straighten(&mut mesh, &creases, &mut on_crease, scale);
     let mut span = span(progress, 0.75, 1.0);
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
@@ -194,6 +200,8 @@ struct Triangulated {
     mesh: Mesh,
     on_crease: Vec<bool>,
     at_end: Vec<bool>,
+    /// What is known of the creases of vertices that are not at an end.
+    creases: Vec<OnCrease>,
 }
 
 /// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
@@ -221,10 +229,17 @@ fn triangulate(dual: Dual) -> Triangulated {
     if mesh.normals.contains(&Vec3::ZERO) {
         fill_normals(&mut mesh);
     }
+    let crease = |crease: &OnCrease| {
+        let vertex = index[crease.vertex as usize];
+        let inner = vertex != u32::MAX && !at_end[vertex as usize];
+        inner.then_some(OnCrease { vertex, ..*crease })
+    };
+    let creases = dual.creases.iter().filter_map(crease).collect();
     Triangulated {
         mesh,
         on_crease,
         at_end,
+        creases,
     }
 }
 

@@ -11,6 +11,11 @@ pub trait Implicit: Sync {
     /// A new [`Implicit::Scratch`].
     fn scratch(&self) -> Self::Scratch;
 
+    /// Standard deviation of the noise in what the function was fitted to.
+    fn noise(&self) -> f64 {
+        0.0
+    }
+
     /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
     fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
 

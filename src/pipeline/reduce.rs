@@ -114,6 +114,7 @@ pub(crate) fn reduce_report(
         doubts: [
             report::doubts_of_faces(reduced.cloud.faces),
             report::doubts_of_steps(noise.steps),
+            report::doubts_of_lines(noise.lines),
         ]
         .concat(),
         ..Default::default()

@@ -7,6 +7,7 @@ use crate::cloud::copies::copies;
 use crate::cloud::octree::Octree;
 use crate::cloud::{Cloud, in_frame};
 use crate::features::Features;
+use crate::features::lines::Thinned;
 use crate::features::noise::Scales;
 use crate::features::scatter;
 use crate::fit::cells::Sites;
@@ -133,6 +134,8 @@ pub(crate) struct Noise {
     pub(crate) all: f32,
     /// See [`Features::steps`].
     pub(crate) steps: f32,
+    /// See [`Features::lines`].
+    pub(crate) lines: f32,
 }
 
 impl Noise {
@@ -140,12 +143,14 @@ impl Noise {
         Noise {
             all: features.noise,
             steps: features.steps,
+            lines: features.lines,
         }
     }
 }
 
 /// The reduced points, at `positions`, as sites of the fit, but for those `without` a surface, and the site of each: copies of a
-/// point are one, which stands for the area of all.
+/// point are one, which stands for the area of all; so are points of a scan line that are much nearer to each other than to the
+/// next line.
 pub(crate) fn sites(
     reduced: &Reduced,
     positions: &[Vec3],
@@ -159,23 +164,24 @@ pub(crate) fn sites(
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);
-    let copies = copies(&all.points);
-    let distinct: Vec<Vec3> = copies.iter().map(|c| all.points[c.start]).collect();
-    let index = |k: usize| framed[all.order[k] as usize];
+    let index = |k: u32| framed[all.order[k as usize] as usize];
+    let groups = Groups::of(&all, input.lines > 0.0);
     let mut site_of = vec![None; positions.len()];
-    let mut tree = Octree::build(&distinct);
-    let mut spacing = Vec::with_capacity(distinct.len());
-    for (site, c) in tree.order.iter_mut().enumerate() {
-        let copies = copies[*c as usize].clone();
-        *c = index(copies.start);
-        spacing.push(reduced.spacing[*c as usize] * (copies.len() as f32).sqrt());
-        for k in copies {
+    let mut tree = Octree::build(&groups.places);
+    let mut spacing = Vec::with_capacity(tree.points.len());
+    let mut normals = Vec::with_capacity(tree.points.len());
+    let own = reduced.cloud.normals.as_deref().unwrap_or_default();
+    for (site, place) in tree.order.iter_mut().enumerate() {
+        let members = groups.members(*place);
+        *place = index(members[0]);
+        let area = (members.len() as f32).sqrt();
+        spacing.push(reduced.spacing[*place as usize] * area);
+        normals.push(own[*place as usize]);
+        for &k in members {
             site_of[index(k) as usize] = Some(site as u32);
         }
     }
-    drop(all);
-    let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
-    let normals = tree.order.iter().map(|&i| normals[i as usize]).collect();
+    drop((all, groups));
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
     let noise = Scales::measure(&tree)
         .noise
@@ -183,4 +189,48 @@ pub(crate) fn sites(
         .max(TERRACE * input.steps);
     let sites = Sites::new(tree, normals, spacing, noise, !orient, progress)?;
     Ok((sites, site_of))
+}
+
+/// Points that are one site.
+struct Groups {
+    places: Vec<Vec3>,
+    /// The points of one place after those of the other.
+    points: Vec<u32>,
+    starts: Vec<u32>,
+}
+
+impl Groups {
+    fn of(tree: &Octree, has_lines: bool) -> Groups {
+        let n = tree.points.len() as u32;
+        if !has_lines {
+            let copies = copies(&tree.points);
+            let starts = copies.iter().map(|c| c.start as u32).chain([n]).collect();
+            return Groups {
+                places: copies.iter().map(|c| tree.points[c.start]).collect(),
+                points: (0..n).collect(),
+                starts,
+            };
+        }
+        let thinned = Thinned::along_lines(tree);
+        let mut points: Vec<u32> = (0..n).collect();
+        points.sort_by_key(|&k| thinned.place_of[k as usize]);
+        let mut starts = vec![0; thinned.places.len() + 1];
+        for &place in &thinned.place_of {
+            starts[place as usize + 1] += 1;
+        }
+        for place in 1..starts.len() {
+            starts[place] += starts[place - 1];
+        }
+        Groups {
+            places: thinned.places,
+            points,
+            starts,
+        }
+    }
+
+    /// The points of a place, at least one.
+    fn members(&self, place: u32) -> &[u32] {
+        let place = place as usize;
+        &self.points[self.starts[place] as usize..self.starts[place + 1] as usize]
+    }
 }

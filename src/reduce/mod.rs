@@ -313,7 +313,8 @@ impl Job<'_> {
         };
         Plan {
             placement,
-            to_borders: dense && placement != Placement::Center,
+            // The next line is no border, far as it is.
+            to_borders: dense && placement != Placement::Center && self.features.lines == 0.0,
         }
     }
 

@@ -158,6 +158,22 @@ pub(crate) fn doubts_of_surface(looked: &Looked) -> Vec<Doubt> {
     doubts
 }
 
+/// What is to be said of scan lines far apart, on which this share of the points is.
+pub(crate) fn doubts_of_lines(share: f32) -> Vec<Doubt> {
+    if share == 0.0 {
+        return Vec::new();
+    }
+    vec![Doubt {
+        code: "lines",
+        message: format!(
+            "{:.0} % of the points are on scan lines much farther apart than the points of a line: the surface between lines \
+             is drawn from one to the next.",
+            100.0 * share
+        ),
+        share: Some(share.into()),
+    }]
+}
+
 /// What is to be said of points that were taken from `faces`, where they were.
 pub(crate) fn doubts_of_faces(faces: u64) -> Vec<Doubt> {
     if faces == 0 {

@@ -20,7 +20,8 @@ pub use crate::mesh::topology::{Topology, area, topology, volume};
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
 pub(crate) use knowledge::{
-    Looked, doubts, doubts_of_faces, doubts_of_shape, doubts_of_steps, doubts_of_surface,
+    Looked, doubts, doubts_of_faces, doubts_of_lines, doubts_of_shape, doubts_of_steps,
+    doubts_of_surface,
 };
 
 /// Mean, root mean square and maximum of distances.
