@@ -256,7 +256,12 @@ export type OutputFormat =
   | 'las'
   | 'laz'
   /** Triangles and colours; the origin is the item's transform. z is up, and the unit is the millimetre, where the cloud says its own. */
-  | '3mf';
+  | '3mf'
+  /**
+   * USDZ, one layer as text: everything. Positions are in single precision, and the origin is a translation in double precision. y is
+   * up, and the unit is the metre, where the cloud says its own. Colours are linear, attributes primvars.
+   */
+  | 'usdz';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
