@@ -388,4 +388,6 @@ export class PointweaveError extends Error {
   readonly expected?: unknown;
   /** What was there instead. */
   readonly found?: unknown;
+  /** Of a table of text that could not be read: its first rows, for a person who knows what its `columns` are. */
+  readonly table?: FileCloud['file']['table'];
 }

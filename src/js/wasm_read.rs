@@ -143,14 +143,23 @@ pub fn read_picture(pixels: Option<Vec<u8>>, width: usize, height: usize) -> JsR
     })
 }
 
-/// Does something with the file that is being read; an error ends it.
+/// Does something with the file that is being read; an error ends it. That of a table of text has the `table` that could not be read.
 fn with(work: impl FnOnce(&mut Reading) -> JsResult) -> JsResult {
     let mut reading = READING
         .take()
         .ok_or_else(|| Error::Internal("no file is being read".into()))?;
-    let answer = work(&mut reading)?;
-    READING.set(Some(reading));
-    Ok(answer)
+    match work(&mut reading) {
+        Ok(answer) => {
+            READING.set(Some(reading));
+            Ok(answer)
+        }
+        Err(error) => {
+            if let Some(preview) = reading.preview() {
+                Reflect::set(&error, &"table".into(), &table(&preview)?)?;
+            }
+            Err(error)
+        }
+    }
 }
 
 fn named(name: &str) -> Result<Format, Error> {
