@@ -588,3 +588,62 @@ fn usdz_is_a_stored_layer_with_y_up_in_metres() {
         Err("empty-cloud")
     );
 }
+
+#[test]
+fn times_in_layers_are_those_of_the_same_points_unpacked() {
+    const POINTS: usize = 120_000;
+    let mut state = 7u32;
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    let mut cloud = RawCloud::new(Positions::F32(vec![]));
+    let mut columns: [Vec<f32>; 4] = Default::default();
+    // Five scanners take turns; pulses of several returns have one time; clocks run, stand, jump, and go back.
+    let mut clocks = [0.0f32, 1e3, 5e5, 1e6, -3e4];
+    let mut positions = Vec::new();
+    while columns[0].len() < POINTS {
+        let scanner = random(5) as usize;
+        let clock = &mut clocks[scanner];
+        *clock += match random(12) {
+            0 => random(1_000_000) as f32,
+            1 => -(random(5000) as f32),
+            2 => 0.0,
+            3 => 0.001 * random(1000) as f32,
+            _ => 0.25,
+        };
+        let returns = 1 + random(4);
+        for number in 1..=returns {
+            let values = [*clock, number as f32, returns as f32, (scanner % 4) as f32];
+            columns
+                .iter_mut()
+                .zip(values)
+                .for_each(|(column, value)| column.push(value));
+            positions.extend([0; 3].map(|_| random(100_000) as f32 / 1024.0));
+        }
+    }
+    cloud.positions = Positions::F32(positions);
+    let names = [
+        "gps_time",
+        "return_number",
+        "number_of_returns",
+        "scanner_channel",
+    ];
+    cloud.attributes = names
+        .into_iter()
+        .zip(columns)
+        .map(|(name, values)| Attribute {
+            name: name.into(),
+            values,
+        })
+        .collect();
+    let [plain, packed] = [Output::Las, Output::Laz].map(|output| {
+        let bytes = write(&cloud, None, output, WriteOptions::default()).unwrap();
+        read(&bytes, Format::Las).unwrap()
+    });
+    for attribute in &cloud.attributes {
+        for read in [&plain, &packed] {
+            assert!(read.attributes.contains(attribute), "{}", attribute.name);
+        }
+    }
+}

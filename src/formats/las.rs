@@ -10,6 +10,7 @@
 mod crs;
 mod fields;
 mod header;
+mod layered;
 mod laz;
 mod time;
 

@@ -1,6 +1,6 @@
 // `cargo xtask bench formats`: each format from Pointweave's writers to the readers of others, and from their writers to
 // Pointweave's readers. Positions, bounds, colours, normals, attributes, triangles, up and unit have to be equal; it fails where one is
-// not. PEERS_PYTHON is a Python with what peers.txt lists.
+// not. PEERS_PYTHON is a Python with what tests/bench/formats.txt lists.
 
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';

@@ -96,7 +96,7 @@ async function write() {
   };
   const reports = [];
   for (const [name, thing] of [['cloud', local], ['surveyed', surveyed], ['mesh', mesh]]) {
-    const formats = name === 'mesh' ? ['ply', 'obj', 'glb', 'stl', '3mf'] : ['ply', 'xyz', 'obj', 'pcd', 'glb', 'las', 'laz'];
+    const formats = name === 'mesh' ? ['ply', 'obj', 'glb', 'stl', '3mf', 'usdz'] : ['ply', 'xyz', 'obj', 'pcd', 'glb', 'las', 'laz', 'usdz'];
     for (const format of formats) {
       for (const [i, more] of (options[format] ?? [{}]).entries()) {
         const bytes = await engine.write(thing, { format, ...more });
