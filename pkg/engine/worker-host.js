@@ -29,8 +29,11 @@ import { PointweaveError, isFatal } from './errors.js';
  * @property {() => void} terminate
  */
 
-/** A call that keeps what it has measured may take so long to stop by itself; then its worker is terminated, as others are at once. */
-const GRACE_MS = 60;
+/**
+ * A call that keeps what it has measured may take so long to stop by itself; then its worker is terminated, as others are at
+ * once. Only the next call waits for it. It stops within 20 ms; a machine with other work to do takes longer.
+ */
+const GRACE_MS = 1000;
 
 /** A pool that has not started by then never will, and the single-threaded build takes over. */
 const POOL_LIMIT_MS = 30_000;

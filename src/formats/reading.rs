@@ -114,7 +114,7 @@ impl Reading {
     /// The next bytes.
     ///
     /// # Errors
-    /// Those of [`super::read`] and of [`super::detect`].
+    /// Those of [`super::read`] and of [`super::detect()`].
     pub fn push(&mut self, bytes: &[u8]) -> Result<()> {
         if self.done {
             return Ok(());

@@ -1,4 +1,14 @@
-//! What every border to JavaScript needs: panics kept, errors thrown, objects made.
+//! The border to JavaScript: arguments checked and taken, a call of the crate, results handed over. No algorithm is here.
+//!
+//! 1. `wasm`: the engine's calls: reduce, reconstruct, inspect, sample. `wasm_read`: readers, slice by slice. `wasm_write`:
+//!    writers. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
+//! 2. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
+//! 3. This file is what all of them need: panics kept, errors thrown as objects, objects made.
+//!
+//! **In**: typed arrays, copied once into wasm's memory; options as plain objects whose ranges the crate checks. **Out**: objects of
+//! typed arrays that JavaScript owns, and reports in camel case. An error carries its code, its place, what was expected and found.
+//!
+//! **Cost**: one copy of each array in each direction.
 
 #[cfg(any(feature = "engine", feature = "exports"))]
 pub mod clouds;

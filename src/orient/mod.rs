@@ -16,6 +16,12 @@
 //!
 //! A closed component that lies in the solid of an odd number of others is a cave's wall, and looks into the cave ([`caves`]).
 //! Last, the winding number of the whole is asked ([`inverted`]): it knows what is inside out where little ties it.
+//!
+//! **In**: [`Fits`] with their [`Sites`] (unit frame, normals of arbitrary sign), [`Evidence`]. **Out**: [`Signs`], one a sub-domain,
+//! oriented unit normals of the sites, and the [`Account`] of what decided where.
+//!
+//! **Cost**: linear in the edges, a dozen a sub-domain, times the logarithm of their number for the descent; winding numbers take
+//! n log n for n sites.
 
 pub mod account;
 pub(crate) mod camera;

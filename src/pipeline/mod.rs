@@ -1,8 +1,8 @@
 //! The stages in order: what the crate, the package and the page call.
 //!
-//! - [`inspect`] looks at a cloud and changes nothing: counts, bounds, spacing, noise.
-//! - [`reduce`] takes it to fewer points (section 3): `input` (checks, octree, features, outliers), then [`crate::reduce`].
-//! - [`reconstruct`] takes it to a mesh (section 4): the same, then `sites` (the points that are fitted), [`crate::fit`],
+//! - [`inspect()`] looks at a cloud and changes nothing: counts, bounds, spacing, noise.
+//! - [`reduce()`] takes it to fewer points (section 3): `input` (checks, octree, features, outliers), then [`mod@crate::reduce`].
+//! - [`reconstruct()`] takes it to a mesh (section 4): the same, then `sites` (the points that are fitted), [`crate::fit`],
 //!   [`crate::orient`], [`crate::mesh`], [`crate::report`]. [`reconstruct_again`] remembers in a [`Memory`] what another call for
 //!   the same cloud needs not do again.
 //!

@@ -31,7 +31,7 @@ pub fn reduce(
     reduce_cloud(Cow::Borrowed(cloud), params, progress)
 }
 
-/// [`reduce`] of a cloud that nobody needs any more: 12 bytes a point less.
+/// [`reduce()`] of a cloud that nobody needs any more: 12 bytes a point less.
 ///
 /// # Errors
 /// The same.

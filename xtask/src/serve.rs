@@ -36,10 +36,9 @@ pub fn serve(port: u16) -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;
     let (first, later) = plan.halves();
-    for &build in &first {
+    builder.make_all(&first, |build| {
         steps.begin(&format!("building wasm, {}", build.name()));
-        builder.make(build)?;
-    }
+    })?;
     steps.begin("building the page");
     page::build(&later)?;
     let mut server = start(port)?;
@@ -63,11 +62,13 @@ fn finish(builder: &Builder, later: &[Build], steps: &mut Steps) -> Result<()> {
     if later.is_empty() {
         return Ok(());
     }
-    for (i, &build) in later.iter().enumerate() {
-        note(&later[i..]);
+    let mut begun = 0;
+    builder.make_all(later, |build| {
+        // The one before is not finished yet.
+        note(&later[usize::saturating_sub(begun, 1)..]);
+        begun += 1;
         steps.begin(&format!("building wasm, {}", build.name()));
-        builder.make(build)?;
-    }
+    })?;
     steps.begin("building the page with all of it");
     page::build(&[])?;
     say(&format!(
