@@ -598,10 +598,11 @@ fn times_in_layers_are_those_of_the_same_points_unpacked() {
         (state >> 8) % below
     };
     let mut cloud = RawCloud::new(Positions::F32(vec![]));
-    let mut columns: [Vec<f32>; 4] = Default::default();
+    // The first time is so small that times are not counted from it.
+    let mut columns = [0.5, 1.0, 1.0, 0.0].map(|first: f32| vec![first]);
     // Five scanners take turns; pulses of several returns have one time; clocks run, stand, jump, and go back.
     let mut clocks = [0.0f32, 1e3, 5e5, 1e6, -3e4];
-    let mut positions = Vec::new();
+    let mut positions = vec![0.0; 3];
     while columns[0].len() < POINTS {
         let scanner = random(5) as usize;
         let clock = &mut clocks[scanner];

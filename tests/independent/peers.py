@@ -12,7 +12,7 @@ import open3d as o3d
 import plyfile
 import pye57
 import trimesh
-from pxr import Usd, UsdGeom, UsdUtils
+from pxr import Usd, UsdGeom, UsdValidation
 
 FOLDER = sys.argv[1]
 TRUTH = json.load(open(os.path.join(FOLDER, "truth.json")))
@@ -227,7 +227,7 @@ def by_usd(name):
         normals=(geometry.GetNormalsAttr().Get(), y_up(normals), 1e-7),
         colors=(primvars.GetPrimvar("displayColor").Get(), linear(colors), 1e-6),
         extent=(np.array(geometry.GetExtentAttr().Get()), np.array(UsdGeom.PointBased.ComputeExtent(geometry.GetPointsAttr().Get())), 1e-6),
-        errors=(errors_of(name), [], 0),
+        errors=(errors_of(stage), [], 0),
     )
     if name.startswith("mesh"):
         mesh = UsdGeom.Mesh(prim)
@@ -235,11 +235,10 @@ def by_usd(name):
     check(name, "usd-core", **pairs)
 
 
-def errors_of(name):
-    """What USD's own rules of packages find (`usdchecker --arkit`)."""
-    checker = UsdUtils.ComplianceChecker(arkit=True)
-    checker.CheckCompliance(ours(name))
-    return [*checker.GetErrors(), *checker.GetFailedChecks()]
+def errors_of(stage):
+    """What all of USD's own rules find, those of packages included."""
+    rules = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    return [error.GetMessage() for error in UsdValidation.ValidationContext(rules).Validate(stage)]
 
 
 for name in sorted(os.listdir(os.path.join(FOLDER, "ours"))):
