@@ -211,7 +211,6 @@ table! {
     /// Options of a reconstruction.
     options SurfaceParams {
         /// How the cloud is reduced first. Without a reduction every point goes to the fit, and attributes are means on the mesh.
-        #[serde(with = "reduce_or_false")]
         nested reduce: Option<ReduceParams> = Some(ReduceParams::default()), flag("fit every point");
         /// Largest rms residual of a sub-domain at its input points, a fraction of the diagonal. The default is the paper's.
         number accuracy: f64 = 6e-4, range(above 0 below 1), flag("residual that the fit has to reach, a share of the diagonal"),
