@@ -75,6 +75,14 @@ impl Scales {
         Scales::new(noise, self.spacing)
     }
 
+    /// For noise of no more than so much, with the same spacing.
+    pub(crate) fn at_most(self, noise: f32) -> Scales {
+        if noise >= self.noise {
+            return self;
+        }
+        Scales::new(noise, self.spacing)
+    }
+
     /// Measures the noise of a cloud.
     pub(crate) fn measure(tree: &Octree) -> Scales {
         let groups = tree.cut(|node| node.range().len() <= GROUP);
