@@ -256,7 +256,12 @@ export type OutputFormat =
   | 'las'
   | 'laz'
   /** Triangles and colours; the origin is the item's transform. z is up, and the unit is the millimetre, where the cloud says its own. */
-  | '3mf';
+  | '3mf'
+  /**
+   * USDZ, one layer as text: everything. Positions are in single precision, and the origin is a translation in double precision. y is
+   * up, and the unit is the metre, where the cloud says its own. Colours are linear, attributes primvars.
+   */
+  | 'usdz';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
@@ -383,4 +388,6 @@ export class PointweaveError extends Error {
   readonly expected?: unknown;
   /** What was there instead. */
   readonly found?: unknown;
+  /** Of a table of text that could not be read: its first rows, for a person who knows what its `columns` are. */
+  readonly table?: FileCloud['file']['table'];
 }

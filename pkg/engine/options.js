@@ -21,7 +21,7 @@ const READ = {
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
   up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },

@@ -1,9 +1,9 @@
 //! Neighbours of points that lie close together, found for all of them at once.
 //!
-//! To ask the tree for every point alone is most of the cost of a local sum. So a cell of some dozen points gathers once
-//! whatever lies around its box; blocks of eight of its points, a lane each, narrow that down to their own box, and
-//! every neighbour that is left meets all eight at once. The sums themselves vanish smoothly at their support's rim, so what
-//! a block sees beyond it adds nothing.
+//! A query of the tree for each point would be most of the cost of a local sum. So a cell of some dozen points gathers the points
+//! around its box once. Blocks of eight of its points, one per lane, narrow these down to their own box, and each neighbour
+//! that is left is evaluated for all eight at once. Weights vanish smoothly at the rim of their support, so points that a
+//! block sees beyond it add nothing.
 
 use std::ops::Range;
 

@@ -40,6 +40,8 @@ mod format;
 mod input;
 #[cfg(feature = "las")]
 mod las;
+#[cfg(any(feature = "las", feature = "exports"))]
+mod las_names;
 #[cfg(feature = "files")]
 mod lzf;
 #[cfg(feature = "files")]

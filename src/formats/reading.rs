@@ -164,6 +164,11 @@ impl Reading {
         }
     }
 
+    /// The first rows of a table of text, once they are there; after an error, too.
+    pub fn preview(&self) -> Option<Preview> {
+        self.parser.as_ref().and_then(|parser| parser.preview())
+    }
+
     /// Puts points of the faces in the place of the vertices.
     fn sample(&mut self) {
         let Some(faces) = self.faces.take().filter(|_| HAVE_FACES) else {
@@ -224,7 +229,7 @@ impl Reading {
             }),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
-            preview: parser.and_then(|parser| parser.preview()),
+            preview: self.preview(),
             sampling: self.sampled.clone(),
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
             up: self.up(format),

@@ -33,6 +33,7 @@ pub mod shares;
 mod stats;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
+pub(crate) mod walls;
 
 use std::ops::Range;
 
@@ -308,7 +309,8 @@ impl Job<'_> {
         };
         Plan {
             placement,
-            to_borders: dense && placement != Placement::Center,
+            // The next line is no border, far as it is.
+            to_borders: dense && placement != Placement::Center && self.features.lines == 0.0,
         }
     }
 

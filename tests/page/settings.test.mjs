@@ -141,6 +141,7 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     const holds = {
       'mesh-glb': [glb, triangles], 'mesh-ply': [header('face'), triangles], 'mesh-obj': [count(/^f /gm), triangles],
       'mesh-stl': [(bytes) => bytes.readUInt32LE(80), triangles], 'mesh-3mf': [async (bytes) => (await read(bytes)).faces, triangles],
+      'mesh-usdz': [(bytes) => count(/\d, (?=\d)/g)(/faceVertexCounts = \[(.*?)\]/.exec(bytes.toString('latin1'))?.[1] ?? '') + 1, triangles],
       'reduced-ply': [header('vertex'), kept], 'reduced-glb': [glb, kept], 'reduced-xyz': [count(/^[-\d]/gm), kept],
       'reduced-pcd': [points, kept], 'reduced-las': [points, kept],
     };
