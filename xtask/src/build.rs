@@ -119,16 +119,6 @@ impl Build {
         }
     }
 
-    /// Arguments for rustc when it compiles the module itself, after everything that the module is made of.
-    fn own_flags(self) -> &'static [&'static str] {
-        match self {
-            // A fifth of what the compiler puts into loops by itself makes an engine a tenth smaller. What has to be in them says so
-            // by `#[inline]`, which has a limit of its own.
-            Self::Single | Self::Threads => &["-Cllvm-args=-inline-threshold=50"],
-            _ => &[],
-        }
-    }
-
     /// The finished module.
     fn module(self) -> PathBuf {
         let folder = root().join("pkg/wasm").join(self.name());
@@ -248,9 +238,8 @@ impl Builder {
     fn compile(&self, build: Build) -> Result<Option<PathBuf>> {
         run(
             build
-                .cargo(&self.toolchain, "rustc")
-                .args(["--quiet", "--lib", "--"])
-                .args(build.own_flags()),
+                .cargo(&self.toolchain, "build")
+                .args(["--quiet", "--lib"]),
             "the wasm build failed; its errors are above",
         )?;
         let wasm = build
