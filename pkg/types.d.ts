@@ -312,10 +312,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/` and `exports/`, or the URLs of the wasm files.
-   * All but the first two are loaded when a file of theirs is read or written. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/` and `samples/`, or
+   * the URLs of the wasm files. All but the first two are loaded when a file of theirs is read or written, or a sample made. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; samples?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.

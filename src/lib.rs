@@ -52,7 +52,7 @@ pub mod report;
 pub mod pipeline;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.
-#[cfg(feature = "stages")]
+#[cfg(any(feature = "samples", feature = "stages"))]
 pub mod samples;
 pub mod formats;
 

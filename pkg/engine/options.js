@@ -29,9 +29,6 @@ const WRITE = {
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
 
-/** Formats whose writer is a build of its own. */
-export const EXPORTED = ['pcd', 'las', 'laz', '3mf', 'usdz'];
-
 const MODEL = choice('duck', 'pig', 'part');
 
 const SAMPLE = {
@@ -41,7 +38,7 @@ const SAMPLE = {
 };
 
 /** Folders of `pkg/wasm`. */
-const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports'];
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'samples'];
 
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),

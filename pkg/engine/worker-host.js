@@ -1,4 +1,7 @@
-/** Runs requests one at a time, in this thread, in a worker, or in a worker with a thread pool. */
+/**
+ * Runs requests one at a time, in this thread, in a worker, or in a worker with a thread pool; and stops one when its signal is
+ * aborted or its `onProgress` throws.
+ */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { PointweaveError, isFatal } from './errors.js';

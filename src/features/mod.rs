@@ -11,6 +11,8 @@
 //!    mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on every quadric, with a third of the variance that
 //!    fitting one would have, and blind to the far side of a crease. By that distance noisy points are moved.
 //!
+//! Of rows of points far apart (`lines`) places are measured that are about as far apart in every direction.
+//!
 //! [`outliers`] finds isolated points, where the caller wants them dropped; the features of the others are then measured again.
 //!
 //! **In**: an octree, unit frame. **Out**: [`Features`] in the octree's order; lengths in the unit frame, curvature in its
@@ -18,10 +20,14 @@
 //!
 //! **Cost**: one plane and two filter sums for each point, n log n in all.
 
+pub(crate) mod depths;
 pub(crate) mod filter;
+pub(crate) mod lines;
 pub(crate) mod noise;
+pub(crate) mod opposite;
 pub mod outliers;
 pub(crate) mod planes;
+pub(crate) mod scatter;
 pub(crate) mod steps;
 pub(crate) mod values;
 
@@ -33,6 +39,7 @@ use crate::cloud::copies::{copied, copies};
 use crate::cloud::neighborhood::CELL;
 use crate::cloud::octree::Octree;
 use crate::features::filter::{Filter, Sums};
+use crate::features::lines::Thinned;
 use crate::features::noise::Scales;
 use crate::features::planes::{Plane, Planes};
 use glam::Vec3;
@@ -43,13 +50,24 @@ pub use crate::features::values::Features;
 impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+        Features::measure_seen(tree, &|_| None, progress)
+    }
+
+    /// [`Features::measure`] of points that were seen from somewhere: `eye` says from where, of a point in the octree's order.
+    pub(crate) fn measure_seen(
+        tree: &Octree,
+        eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
         // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
         if !copied(&tree.points) {
-            return Features::measure_distinct(tree, progress);
+            return Features::measure_distinct(tree, eye, progress);
         }
         let copies: Vec<Range<usize>> = copies(&tree.points);
         let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
-        let one = Features::measure_distinct(&Octree::build(&distinct), progress)?;
+        let places = Octree::build(&distinct);
+        let eye_of = |k: usize| eye(copies[places.order[k] as usize].start);
+        let one = Features::measure_distinct(&places, &eye_of, progress)?;
         let each = || {
             copies
                 .iter()
@@ -67,13 +85,33 @@ impl Features {
             residual: spread(&one.residual),
             noise: one.noise,
             steps: one.steps,
+            lines: one.lines,
         })
     }
 
-    fn measure_distinct(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
+    fn measure_distinct(
+        tree: &Octree,
+        eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
+        let steps = steps::noise(tree, eye);
+        let Some(thinned) = Thinned::of(tree) else {
+            return Features::measure_even(tree, (steps, f32::INFINITY), progress);
+        };
+        let places = Octree::build(&thinned.places);
+        let noise = (steps, thinned.noise_of_places().max(steps));
+        let of_places = Features::measure_even(&places, noise, progress)?;
+        Ok(thinned.features(tree, &places, &of_places))
+    }
+
+    /// Of points whose nearest are around them. Their noise is at least that of `steps` and no more than `most`.
+    fn measure_even(
+        tree: &Octree,
+        (steps, most): (f32, f32),
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
         let cells = tree.cut(|node| node.range().len() <= CELL);
-        let steps = steps::noise(tree);
-        let scales = Scales::measure(tree).at_least(steps);
+        let scales = Scales::measure(tree).at_most(most).at_least(steps);
         let mut part = Part::new(progress, 0.0..0.4);
         let n = tree.points.len();
         let planes: Vec<Plane> = par::flat_map_progress(
@@ -92,6 +130,7 @@ impl Features {
             residual: Vec::new(),
             noise: scales.noise,
             steps,
+            lines: 0.0,
         };
         drop(planes);
         features.noise = noise::within_sheets(tree, &features.normals, &scales).max(steps);

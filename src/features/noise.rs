@@ -1,7 +1,7 @@
 //! The noise of a scan, and the supports that follow from it.
 //!
-//! A quadric is fitted around some of the points; what they stand off it is noise, as a quadric follows whatever bends
-//! slowly.
+//! Quadrics are fitted to the neighbours of a sample of the points. A quadric follows every surface that bends slowly, so the
+//! points' distances from it are noise.
 
 use std::ops::Range;
 
@@ -70,6 +70,14 @@ impl Scales {
     /// For noise of at least so much, with the same spacing.
     pub(crate) fn at_least(self, noise: f32) -> Scales {
         if noise <= self.noise {
+            return self;
+        }
+        Scales::new(noise, self.spacing)
+    }
+
+    /// For noise of no more than so much, with the same spacing.
+    pub(crate) fn at_most(self, noise: f32) -> Scales {
+        if noise >= self.noise {
             return self;
         }
         Scales::new(noise, self.spacing)

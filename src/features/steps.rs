@@ -2,6 +2,7 @@
 //!
 //! 1. The coordinates along an axis lie on a lattice when they have few values, and the values' differences are whole
 //!    multiples of one step.
+//!    Depths from a viewpoint are looked at by [`depths`].
 //! 2. A lattice is no step where the points were laid out on it: of a raster or of parallel scan lines the points of one
 //!    level are a line. They are a step where the points of one level cover a patch of the surface, a terrace.
 //!
@@ -10,13 +11,14 @@
 
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
+use crate::features::depths;
 use crate::features::noise::quantile;
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 
 /// Points whose coordinates are looked at.
-const SAMPLE: usize = 1 << 15;
+pub(crate) const SAMPLE: usize = 1 << 15;
 /// Points a level, at least: fewer are no lattice, however the values lie.
-const LEVEL: usize = 8;
+pub(crate) const LEVEL: usize = 8;
 /// Values nearer than this (unit frame) are one level: some times what single precision rounds.
 const SAME: f32 = 1e-6;
 /// Differences of levels are whole multiples of the step to this share of it, but for this share of them.
@@ -24,19 +26,32 @@ const WHOLE: (f32, f32) = (0.05, 0.02);
 /// Points that are asked for their terraces, and the neighbours of each.
 const ASKED: usize = 400;
 /// See [`ASKED`].
-const NEAR: usize = 24;
+pub(crate) const NEAR: usize = 24;
 /// Points of one level are a patch, no line, when their lesser variance is this share of the larger one: a straight line has 0.
-const PATCH: f64 = 0.1;
+pub(crate) const PATCH: f64 = 0.1;
 /// Share of the points whose neighbours must show a patch: those of a third of a closed surface face the axis.
-const TERRACES: f32 = 0.25;
+pub(crate) const TERRACES: f32 = 0.25;
+/// Levels that show terraces, at least: the floor and the lid of a box on a raster are two.
+pub(crate) const LEVELS: usize = 3;
 
-/// Standard deviation of the rounding along the axis that has the coarsest steps (unit frame); 0 without steps.
-pub(crate) fn noise(tree: &Octree) -> f32 {
-    let step = (0..3).filter_map(|axis| {
+/// Standard deviation of the rounding along the axis, or of the depth seen from the points' `eye`s, that has the coarsest
+/// steps (unit frame); 0 without steps.
+pub(crate) fn noise(tree: &Octree, eye: &(dyn Fn(usize) -> Option<Vec3> + Sync)) -> f32 {
+    let steps = (0..3).filter_map(|axis| {
         let step = step(tree, axis)?;
         has_terraces(tree, axis, step).then_some(step)
     });
-    step.fold(0.0, f32::max) / 12f32.sqrt()
+    let mut coarsest = steps.fold(0.0, f32::max);
+    if coarsest == 0.0 {
+        coarsest = depths::step(tree, eye);
+    }
+    coarsest / 12f32.sqrt()
+}
+
+/// The points that are asked for their terraces.
+pub(crate) fn asked(tree: &Octree) -> impl Iterator<Item = usize> {
+    let n = tree.points.len();
+    (0..n).step_by(n.div_ceil(ASKED).max(1))
 }
 
 /// The step of the lattice that the coordinates along an axis lie on.
@@ -68,10 +83,9 @@ fn step(tree: &Octree, axis: usize) -> Option<f32> {
 
 /// Whether the points of one level cover patches.
 fn has_terraces(tree: &Octree, axis: usize, step: f32) -> bool {
-    let n = tree.points.len();
     let mut found: Vec<Neighbor> = Vec::new();
-    let (mut asked, mut patches) = (0.0, 0.0);
-    for i in (0..n).step_by(n.div_ceil(ASKED)) {
+    let (mut all, mut patches, mut levels) = (0.0, 0.0, Vec::new());
+    for i in asked(tree) {
         let p = tree.points[i];
         tree.knn(p, NEAR, &mut found);
         let level = found
@@ -81,10 +95,15 @@ fn has_terraces(tree: &Octree, axis: usize, step: f32) -> bool {
         let flat: Vec<DVec2> = level
             .map(|d| DVec2::new(d[(axis + 1) % 3].into(), d[(axis + 2) % 3].into()))
             .collect();
-        asked += 1.0;
-        patches += f32::from(flat.len() >= LEVEL && is_patch(&flat));
+        all += 1.0;
+        if flat.len() >= LEVEL && is_patch(&flat) {
+            patches += 1.0;
+            levels.push((p[axis] / step).round() as i32);
+        }
     }
-    patches >= TERRACES * asked
+    levels.sort_unstable();
+    levels.dedup();
+    patches >= TERRACES * all && levels.len() >= LEVELS
 }
 
 /// Whether points in a plane vary in two directions.
@@ -135,7 +154,7 @@ mod tests {
                 relief(10_000, scattered, step),
                 relief(10_000, raster, step),
             ] {
-                let found = f64::from(noise(&tree));
+                let found = f64::from(noise(&tree, &|_| None));
                 assert!(
                     (found / expected - 1.0).abs() < 0.01,
                     "{found} of {expected}"
@@ -147,9 +166,9 @@ mod tests {
             relief(10_000, raster, 0.0),
             relief(10_000, lines, 0.0),
         ] {
-            assert_eq!(noise(&tree), 0.0);
+            assert_eq!(noise(&tree, &|_| None), 0.0);
         }
         // Finer than the points are apart: nobody sees them.
-        assert!(noise(&relief(10_000, scattered, 1e-5)) < 1e-5);
+        assert!(noise(&relief(10_000, scattered, 1e-5), &|_| None) < 1e-5);
     }
 }

@@ -1,4 +1,4 @@
-//! What is known of every point.
+//! [`Features`]: the per-point estimates, one array each.
 
 use crate::cloud::octree::Octree;
 use crate::features::noise::quantile;
@@ -23,6 +23,8 @@ pub struct Features {
     /// The part of it that comes from rounded coordinates ([`crate::features::steps`]), which a reduction does not average
     /// away; 0 where they were not rounded.
     pub steps: f32,
+    /// Share of the points that are on scan lines much farther apart than their points ([`crate::features::lines`]).
+    pub lines: f32,
 }
 
 impl Features {

@@ -1,4 +1,4 @@
-//! What a file holds, before it is a cloud, and what is written.
+//! [`RawCloud`]: the arrays of a file, in the file's frame. Readers make it, writers take it.
 
 use super::faces::sampling::Sampling;
 use crate::base::error::{Error, Result};

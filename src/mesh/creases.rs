@@ -5,6 +5,7 @@
 
 use crate::base::linalg::sym_eigen;
 use crate::mesh::probe::{MARGIN, Probe, Quad, Vertex, clamp};
+use crate::mesh::straighten::OnCrease;
 use crate::mesh::surface::Implicit;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -112,8 +113,11 @@ pub(crate) struct Candidate {
     pub(crate) crossings: Range<usize>,
 }
 
-/// A vertex that has been moved to a crease or corner: (vertex, position, normal).
-pub(crate) type Moved = (u32, Vec3, Vec3);
+/// A vertex that has been moved to a crease or corner, as far as its cell goes, and where that is.
+pub(crate) struct Moved {
+    pub(crate) position: Vec3,
+    pub(crate) crease: OnCrease,
+}
 
 /// The candidates whose planes meet in a line or a point of their cell, moved there. `edge` is the cells' edge length.
 pub(crate) fn sharpen<F: Implicit>(
@@ -139,17 +143,21 @@ pub(crate) fn sharpen<F: Implicit>(
             .filter_map(|c| c.plane)
             .collect();
         let crease = meet_planes(&planes)?;
-        let inside = clamp(crease.in_cell(candidate.corner, edge));
-        let position = candidate.corner + edge * inside;
-        Some((
-            candidate.vertex,
-            position.as_vec3(),
-            crease.normal.as_vec3(),
-        ))
+        let nearest = crease.in_cell(candidate.corner, edge);
+        let at = |inside: DVec3| (candidate.corner + edge * inside).as_vec3();
+        Some(Moved {
+            position: at(clamp(nearest)),
+            crease: OnCrease {
+                vertex: candidate.vertex,
+                point: at(nearest),
+                along: crease.along.as_vec3(),
+                normal: crease.normal.as_vec3(),
+            },
+        })
     };
     let mut moved: Vec<Moved> = candidates.iter().filter_map(solve).collect();
     probe.at.clear();
-    probe.at.extend(moved.iter().map(|m| m.1.as_dvec3()));
+    probe.at.extend(moved.iter().map(|m| m.position.as_dvec3()));
     probe.evaluate();
     let mut found = probe.found.iter();
     let is_near = |(value, _): (f64, DVec3)| value.abs() < FARTHEST * edge;

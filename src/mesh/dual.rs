@@ -18,6 +18,7 @@ use crate::mesh::creases::{self, Candidate, Crossing, Moved};
 use crate::mesh::lattice::{Lattice, Place, corner};
 use crate::mesh::loops::{LoopTable, Loops, ambiguous_faces, edge_corners, face_corners};
 use crate::mesh::probe::{Probe, Quad, Vertex, clamp};
+use crate::mesh::straighten::OnCrease;
 use crate::mesh::surface::Implicit;
 use glam::{DVec3, IVec3, Vec3};
 
@@ -51,6 +52,8 @@ pub(crate) struct Dual {
     /// In the order of the cells; those at the end of an open surface may have no quad.
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) quads: Vec<Quad>,
+    /// What the cells know of creases, in ascending order of vertices.
+    pub(crate) creases: Vec<OnCrease>,
 }
 
 impl Dual {
@@ -97,6 +100,7 @@ pub(crate) fn build<F: Implicit>(
     for v in quads.iter().flat_map(|quad| quad.vertices) {
         vertices[v as usize].quads += 1;
     }
+    let mut on_creases = Vec::new();
     if sharp {
         let on_crease = creases::mark(&vertices, &quads);
         let mut done = 0;
@@ -106,9 +110,10 @@ pub(crate) fn build<F: Implicit>(
                 || Probe::new(field),
                 |k, probe| cells.sharpen(slice[k], &on_crease, probe),
             );
-            for (v, position, normal) in moved.into_iter().flatten() {
-                let vertex = &mut vertices[v as usize];
-                (vertex.position, vertex.normal, vertex.sharp) = (position, normal, true);
+            for Moved { position, crease } in moved.into_iter().flatten() {
+                let vertex: &mut Vertex = &mut vertices[crease.vertex as usize];
+                (vertex.position, vertex.normal, vertex.sharp) = (position, crease.normal, true);
+                on_creases.push(crease);
             }
             done += slice.len();
             progress(0.7 + 0.2 * done as f32 / cells.order.len() as f32)?;
@@ -126,7 +131,11 @@ pub(crate) fn build<F: Implicit>(
         slice.copy_from_slice(&cut.concat());
     }
     progress(1.0)?;
-    Ok(Dual { vertices, quads })
+    Ok(Dual {
+        vertices,
+        quads,
+        creases: on_creases,
+    })
 }
 
 /// The crossed cells with their loops.

@@ -7,8 +7,10 @@
 //! 2. `dual`: dual marching cubes on them; vertices are moved onto the zero set, or onto creases.
 //! 3. `holes`, `trim`, `rims`: where no fitted function reaches, the global extension closes the surface or the surface ends
 //!    (see [`extract`]).
-//! 4. `simplify`: fewer triangles where the surface is flat.
-//! 5. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 4. `straighten`: vertices on creases are moved onto the curves that several cells tell.
+//! 5. `simplify`: fewer triangles where the surface is flat.
+//! 6. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 7. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -26,6 +28,7 @@ pub(crate) mod band;
 pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
+pub(crate) mod crossings;
 pub(crate) mod disc;
 pub(crate) mod dual;
 pub(crate) mod few;
@@ -36,6 +39,7 @@ pub(crate) mod loops;
 pub(crate) mod probe;
 pub(crate) mod rims;
 pub(crate) mod simplify;
+pub(crate) mod straighten;
 pub(crate) mod surface;
 pub mod topology;
 pub(crate) mod trim;
@@ -47,6 +51,7 @@ use crate::mesh::band::{grow, span};
 use crate::mesh::dual::{Dual, build};
 use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
+use crate::mesh::straighten::{OnCrease, straighten};
 use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
@@ -82,6 +87,10 @@ pub struct Extracted {
     pub open: usize,
     /// Holes that were closed and rims that were left open, the widest first.
     pub holes: Vec<Hole>,
+    /// Triangles that cross others, after what could be mended was.
+    pub crossings: usize,
+    /// Share of the points (0-1) that were nearest to pieces that were left out as too small.
+    pub dropped: f64,
 }
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
@@ -92,7 +101,7 @@ pub struct Extracted {
 ///
 /// Where no fitted function reaches,
 /// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
-///   in a cell with an unreached corner;
+///   in a cell with an unreached corner, and near its rims none that shows the back to [`Implicit::sensor`];
 /// - `Closed`: like `Open`, and then each rim is capped by a membrane, which is flat where the rim is; nothing else moves;
 /// - `Auto`: unreached corners take [`Implicit::global`], then each cap for itself stays or goes, by how far it is from the
 ///   points and how it turns ([`holes`]). Closing stops once it takes more cells than the rest of the surface; components
@@ -127,15 +136,20 @@ pub fn extract<F: Implicit>(
         open,
         mut holes,
     } = decide_holes(&mut dual, params.boundary, (points, reach), params.max_hole);
-    trim_rims(&mut dual, points, reach);
+    trim_rims(&mut dual, (points, reach), params.resolution, |i| {
+        field.sensor(i)
+    });
     split_bow_ties(&mut dual);
-    drop_phantoms(&mut dual, points, reach);
+    let dropped = drop_phantoms(&mut dual, points, reach);
     let Triangulated {
         mut mesh,
-        on_crease,
+        mut on_crease,
         at_end,
+        creases,
     } = triangulate(dual);
     rims::smooth(&mut mesh, &at_end);
+    let scale = (params.resolution, field.noise());
+    straighten(&mut mesh, &creases, &mut on_crease, scale);
     let mut span = span(progress, 0.75, 1.0);
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
@@ -150,6 +164,7 @@ pub fn extract<F: Implicit>(
         closed: if closes { open } else { closed },
         open: if closes { 0 } else { open },
         holes,
+        dropped,
         ..extracted
     })
 }
@@ -169,10 +184,12 @@ impl Extracted {
         } else {
             0.0
         };
+        let crossings = crossings::mend(&mut mesh);
         Extracted {
             mesh,
             filled,
             holes,
+            crossings,
             ..Default::default()
         }
     }
@@ -183,6 +200,8 @@ struct Triangulated {
     mesh: Mesh,
     on_crease: Vec<bool>,
     at_end: Vec<bool>,
+    /// What is known of the creases of vertices that are not at an end.
+    creases: Vec<OnCrease>,
 }
 
 /// Cuts the quads, drops unused vertices, and gives a normal to those that have none: the mean of their triangles'.
@@ -210,10 +229,17 @@ fn triangulate(dual: Dual) -> Triangulated {
     if mesh.normals.contains(&Vec3::ZERO) {
         fill_normals(&mut mesh);
     }
+    let crease = |crease: &OnCrease| {
+        let vertex = index[crease.vertex as usize];
+        let inner = vertex != u32::MAX && !at_end[vertex as usize];
+        inner.then_some(OnCrease { vertex, ..*crease })
+    };
+    let creases = dual.creases.iter().filter_map(crease).collect();
     Triangulated {
         mesh,
         on_crease,
         at_end,
+        creases,
     }
 }
 

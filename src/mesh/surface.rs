@@ -1,4 +1,4 @@
-//! What an extraction starts from, an implicit function, and what it makes, a mesh.
+//! The input and the output of an extraction: [`Implicit`], the function, and [`Mesh`].
 
 use glam::{DVec3, Vec3};
 
@@ -10,6 +10,11 @@ pub trait Implicit: Sync {
 
     /// A new [`Implicit::Scratch`].
     fn scratch(&self) -> Self::Scratch;
+
+    /// Standard deviation of the noise in what the function was fitted to.
+    fn noise(&self) -> f64 {
+        0.0
+    }
 
     /// A value everywhere, which agrees with the fitted one as to inside and outside where both exist.
     fn global(&self, at: DVec3, scratch: &mut Self::Scratch) -> f64;
@@ -24,6 +29,11 @@ pub trait Implicit: Sync {
         found: &mut [Option<(f64, DVec3)>],
         scratch: &mut Self::Scratch,
     );
+
+    /// A vector that points from a fitted point to the sensor that saw it; zero where none is known.
+    fn sensor(&self, _point: usize) -> Vec3 {
+        Vec3::ZERO
+    }
 }
 
 /// A triangle mesh in the unit frame.

@@ -49,7 +49,9 @@ use crate::orient::caves::turn_caves;
 use crate::orient::descent::{descend, settle};
 use crate::orient::domains::{Domains, mean_winding};
 use crate::orient::evidence::{Evidence, Known};
-use crate::orient::graph::{Adjacency, Edge, adjacency, components, edges, energy, spanning_signs};
+use crate::orient::graph::{
+    Adjacency, Edge, adjacency, along_sheets, components, edges, energy, spanning_signs,
+};
 use crate::orient::inverted::Inverted;
 use crate::orient::paper::{advancing_front, turn_outward};
 use crate::orient::parts::Parts;
@@ -194,7 +196,7 @@ impl Solve<'_> {
             parts = Parts::new(domains, self.edges, &mut signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
-        settle(self.edges, &known.unary, &mut signs);
+        settle(&along_sheets(domains, self.edges), &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
         let around = Inverted {
             domains,

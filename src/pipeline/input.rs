@@ -1,4 +1,4 @@
-//! What the pipeline starts from: the caller's points, or those that are not isolated, with all that is measured of them.
+//! The pipeline's input: the caller's points, without the isolated ones where these are dropped, with their octree and features.
 
 use crate::base::error::{Error, Result};
 use crate::base::params::{COLORS, Outliers, ReduceParams};
@@ -8,7 +8,7 @@ use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::features::outliers;
 use crate::reduce::Reduced;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 
 /// Cosine of the largest angle between a normal of the cloud and the measured one: 60°.
@@ -20,7 +20,13 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     progress.update(Stage::Octree, 0.0)?;
     let tree = Octree::build(&cloud.points);
     progress.update(Stage::Octree, 1.0)?;
-    let mut features = Features::measure(&tree, progress)?;
+    let eyes = |i: usize| match &cloud.viewpoints {
+        Some(viewpoints) => viewpoints.seeing(tree.order[i] as usize),
+        // The frame of a depth camera has the camera at its origin.
+        None => Some(DVec3::ZERO),
+    };
+    let eye = |i: usize| eyes(i).map(|eye| cloud.frame.to_unit(eye.to_array()));
+    let mut features = Features::measure_seen(&tree, &eye, progress)?;
     if let Some(normals) = &cloud.normals {
         for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
             let own = normals[i as usize];

@@ -9,6 +9,7 @@
 //! The variants that own their cloud need 12 bytes a point less. **In**: a [`crate::Cloud`], in the unit frame of its own. **Out**:
 //! results in that frame, with functions that give the caller's.
 
+mod doubtful;
 mod input;
 mod inspect;
 mod memory;

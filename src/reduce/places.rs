@@ -40,6 +40,7 @@ impl Places {
             residual: of(&all.residual),
             noise: all.noise,
             steps: all.steps,
+            lines: all.lines,
         }
     }
 

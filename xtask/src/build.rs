@@ -29,14 +29,16 @@ pub enum Build {
     E57,
     /// The decoders of textures' pictures alone.
     Pictures,
-    /// The writers that are not in the engine, alone.
+    /// The writers alone.
     Exports,
+    /// Sample scans alone.
+    Samples,
     /// The readers of what is packed as a whole.
     Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 8] = [
+    pub const ALL: [Build; 9] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -44,6 +46,7 @@ impl Build {
         Build::E57,
         Build::Pictures,
         Build::Exports,
+        Build::Samples,
         Build::Packed,
     ];
     /// Those with the whole engine.
@@ -58,6 +61,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Samples => "samples",
             Self::Packed => "packed",
         }
     }
@@ -72,6 +76,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Samples => "samples",
             Self::Packed => "packed",
         }
     }
@@ -86,6 +91,7 @@ impl Build {
             | Self::E57
             | Self::Pictures
             | Self::Exports
+            | Self::Samples
             | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[

@@ -12,8 +12,8 @@ use crate::shell::{Result, command, not_started, root, say};
 use crate::toolchain;
 use crate::tools;
 
-/// The builds that a page needs to show a scan. The others make it faster, or read and write more formats.
-const FIRST: [Build; 2] = [Build::Single, Build::Files];
+/// The builds that a page needs to show a scan, of a file or a sample. The others make it faster, or read and write more formats.
+const FIRST: [Build; 3] = [Build::Single, Build::Files, Build::Samples];
 
 /// Builds the package and the page, and serves the page until it is stopped.
 pub fn serve(port: u16) -> Result<()> {
@@ -229,7 +229,7 @@ mod tests {
             builds: Build::ALL.to_vec(),
         };
         let ((first, soon), (later, rest)) = bare.steps();
-        assert_eq!((first, later), (6, Build::ALL.len() - FIRST.len() + 1));
+        assert_eq!((first, later), (7, Build::ALL.len() - FIRST.len() + 1));
         assert!(soon > 0.0 && rest > 0.0);
     }
 

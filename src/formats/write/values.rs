@@ -1,4 +1,4 @@
-//! Values of single points.
+//! The values of one point of a cloud, as writers take them.
 
 use crate::formats::raw_cloud::{Positions, RawCloud};
 

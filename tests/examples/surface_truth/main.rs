@@ -1,4 +1,4 @@
-//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [time] [million] [CLOUD.f32 …]`
+//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [edges] [lines] [time] [million] [CLOUD.f32 …]`
 //!
 //! What reconstruction promises, measured on generated clouds whose surface is known: which side is out, what is never
 //! allowed in a mesh, where open surfaces end, how near the mesh is to the truth and how many triangles it takes, and
@@ -7,7 +7,9 @@
 
 mod accuracy;
 mod clouds;
+mod edges;
 mod ends;
+mod lines;
 mod measure;
 #[path = "../../common/mesh.rs"]
 mod mesh;
@@ -36,6 +38,18 @@ fn main() -> io::Result<()> {
     }
     if is_asked("time") || words.iter().any(|w| w == "million") {
         accuracy::times(words.iter().any(|w| w == "million"));
+    }
+    if is_asked("edges") {
+        let soup = words.iter().find_map(|w| w.strip_prefix("truth="));
+        let facets = |path: &str| -> io::Result<clouds::Truth> {
+            let corners = read(path)?;
+            let facets = corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]);
+            Ok(clouds::Truth::Facets(facets.collect()))
+        };
+        edges::run(soup.map(facets).transpose()?);
+    }
+    if is_asked("lines") {
+        lines::run();
     }
     for file in &files {
         topology::rows(file, &read(file)?);
