@@ -160,13 +160,7 @@ impl Xyz {
         let plan = Plan::of(&ahead, &self.options);
         self.preview = match &plan {
             Ok(plan) => Some(plan.preview.clone()),
-            Err(_) => {
-                let any = ReadOptions {
-                    columns: Some(Vec::new()),
-                    ..self.options.clone()
-                };
-                Plan::of(&ahead, &any).ok().map(|plan| plan.preview)
-            }
+            Err(refused) => self.refused(&ahead, refused),
         };
         let plan = match plan {
             Ok(plan) => plan,
@@ -192,6 +186,26 @@ impl Xyz {
         }
         self.plan = Some(plan);
         Ok(())
+    }
+
+    /// What a person needs of a table that is refused, with the names that are not understood.
+    fn refused(&self, ahead: &[Numbered], why: &NoPlan) -> Option<Preview> {
+        let any = ReadOptions {
+            columns: Some(Vec::new()),
+            ..self.options.clone()
+        };
+        let plan = Plan::of(ahead, &any).ok()?;
+        let mut preview = plan.preview;
+        if let NoPlan::Line { number, .. } = why
+            && *number < plan.first_row
+            && let Some(line) = ahead.iter().find(|line| line.number == *number)
+        {
+            let names = plan.dialect.split(&line.bytes);
+            preview.names = names
+                .map(|name| String::from_utf8_lossy(name).into_owned())
+                .collect();
+        }
+        Some(preview)
     }
 
     fn finish(&mut self, input: &Input, table: &mut Option<Table>) -> Result<()> {
