@@ -175,6 +175,13 @@ export interface ReconstructOptions {
    */
   maxHole?: number | 'auto';
   /**
+   * What becomes of points through which there is no surface: foliage, dust, filled volumes.
+   * - `'drop'` (default): The mesh has none of them. They stay in the reduced cloud, without a side, and the report's
+   *   `scatter` counts them.
+   * - `'keep'`: They are points of the surface like all others.
+   */
+  scatter?: 'drop' | 'keep';
+  /**
    * Say of every input point and every vertex how far scan and mesh are apart there: {@link SurfaceMesh.distances}. Default
    * `false`.
    */

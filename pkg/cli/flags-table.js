@@ -30,4 +30,5 @@ export const FLAGS = {
   sharp: 'keep creases',
   boundary: 'close the surface, or let it end where points do',
   maxHole: 'widest hole that is closed, a share of the diagonal',
+  scatter: 'what becomes of foliage, dust and filled volumes',
 };

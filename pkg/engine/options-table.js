@@ -40,6 +40,7 @@ export const RECONSTRUCT = {
   sharp: toggle(true),
   boundary: choice('auto', 'closed', 'open'),
   maxHole: number(0, 1, { or: 'auto', fallback: 'auto' }),
+  scatter: choice('drop', 'keep'),
   distances: toggle(false),
   keep: toggle(false),
 };
