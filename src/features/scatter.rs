@@ -35,6 +35,8 @@ const APART: f32 = 2.5;
 const NOISY: f32 = 1.5;
 /// Places around a place that vote.
 const VOTES: usize = 12;
+/// Less than this share of the places is no scatter.
+const LEAST: f64 = 0.05;
 /// Where more than this share of the places is scatter, the rest is no surface either.
 const MOST: f64 = 0.95;
 
@@ -66,7 +68,12 @@ pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -
     for (alone, first) in alone.iter_mut().zip(&first) {
         *alone |= first;
     }
-    vote(&alone)
+    let mut scatter = vote(&alone);
+    // So little is a corner or an uneven part of a surface.
+    if (scatter.iter().filter(|&&is| is).count() as f64) < LEAST * at.len() as f64 {
+        scatter.fill(false);
+    }
+    scatter
 }
 
 /// Whether so much is scatter that the rest is no surface either.
