@@ -81,12 +81,11 @@ impl Sites {
             let within = (REACH * sites.spacing[i], noise);
             across(&sites.tree, &sites.normals, i, within, steps)
         });
-        sites.spacing = par::map(sites.spacing.len(), || (), |i, ()| sites.of_one_sheet(i));
         Ok(sites)
     }
 
     /// The spacing of a site; beside an opposite sheet that of its own alone, which looks nearly twice as dense with the other.
-    fn of_one_sheet(&self, i: usize) -> f32 {
+    pub(crate) fn of_one_sheet(&self, i: usize) -> f32 {
         let (p, across, spacing) = (self.tree.points[i], self.across[i], self.spacing[i]);
         if across == Vec3::ZERO {
             return spacing;

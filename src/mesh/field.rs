@@ -11,6 +11,7 @@
 
 use crate::base::kernel::wendland;
 use crate::base::lanes::{LANES, Lanes};
+use crate::base::par;
 use crate::cloud::neighborhood::Block;
 use crate::cloud::octree::Octree;
 use crate::features::noise::quantile;
@@ -90,18 +91,14 @@ impl<'a> Field<'a> {
                 .iter()
                 .for_each(|&i| owner[i as usize] = s as u32);
         }
-        let reach: Vec<f32> = sites
-            .spacing
-            .iter()
-            .zip(&owner)
-            .map(|(&h, &s)| {
-                if s != u32::MAX && signs.kept[s as usize] {
-                    REACH * h
-                } else {
-                    0.0
-                }
-            })
-            .collect();
+        let reach: Vec<f32> = par::map(
+            owner.len(),
+            || (),
+            |i, ()| match owner[i] {
+                s if s != u32::MAX && signs.kept[s as usize] => REACH * sites.of_one_sheet(i),
+                _ => 0.0,
+            },
+        );
         let squeeze = sites.across.iter().zip(&reach);
         let squeeze = squeeze
             .map(|(&across, &reach)| {

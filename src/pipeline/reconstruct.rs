@@ -27,6 +27,8 @@ use crate::report::{self, DistanceStats, Looked, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use std::borrow::Cow;
 
+/// Points farther from the mesh than this (fraction of the diagonal) are not on it.
+const LOST: f64 = 0.02;
 /// A surface needs this many points.
 const MIN_POINTS: usize = 4;
 
@@ -234,6 +236,7 @@ fn surface(
     );
     let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
     let kept = (0..input.len()).filter(|&k| !(drops && scattered[k]));
+    let lost = kept.clone().filter(|&k| apart[k].distance > LOST).count();
     let distance = near_stats(kept.map(|k| (input[k], apart[k].distance)));
     let distances = params.distances.then(|| {
         let mut points = vec![f32::NAN; origin.given];
@@ -265,7 +268,7 @@ fn surface(
         points: sites.tree.points.len(),
         triangles: mesh.triangles.len(),
         crossings,
-        islands: dropped,
+        islands: dropped.max(lost as f64 / input.len() as f64),
     };
     doubts.extend(report::doubts_of_surface(&looked));
     let surface_report = SurfaceReport {

@@ -43,11 +43,11 @@ impl Reduction {
         (cloud, tree): (&Cloud, &Octree),
         reduced: Reduced,
         positions: Vec<Vec3>,
-        noise: f32,
+        scales: (f32, f32),
     ) -> Reduction {
         Reduction {
             evidence: Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len()),
-            scatter: scatter::places(tree, &positions, noise),
+            scatter: scatter::places(tree, &positions, scales),
             reduced,
             positions,
         }
@@ -62,7 +62,8 @@ pub(crate) fn points_to_fit(
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<Reduction> {
-    let (n, noise) = (tree.points.len(), features.noise);
+    let n = tree.points.len();
+    let scales = (features.noise, features.median_spacing());
     let is_few = |count: usize| count < MIN_REDUCED.min(n);
     let mut reason = String::new();
     if let Some(asked) = &params.reduce {
@@ -88,7 +89,7 @@ pub(crate) fn points_to_fit(
                         reduced.reason = reason;
                     }
                     let positions = reduced.cloud.points.clone();
-                    return Ok(Reduction::new((cloud, tree), reduced, positions, noise));
+                    return Ok(Reduction::new((cloud, tree), reduced, positions, scales));
                 }
             }
         }
@@ -105,7 +106,7 @@ pub(crate) fn points_to_fit(
     let positions: Vec<Vec3> = (0..n).map(|i| features.denoised(tree, i)).collect();
     let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
     reduced.reason = reason;
-    Ok(Reduction::new((cloud, tree), reduced, positions, noise))
+    Ok(Reduction::new((cloud, tree), reduced, positions, scales))
 }
 
 /// The target, or where a share of the points is too few to keep thin walls apart, how many are enough; and why.

@@ -10,6 +10,9 @@ use std::ops::Range;
 const GROUP: usize = 12;
 /// Share of all reduced points that thin parts may take, at most, beyond what they would have anyway.
 const MOST: f64 = 0.75;
+/// Walls ask for more points than there are when they are thinner than twice this share of the spacing: thicker ones are as good
+/// with those that there are, and noise is averaged by few.
+const THINNER: f32 = 0.75;
 /// Steps of the search for what the other parts get: each halves what is uncertain of it.
 const STEPS: usize = 40;
 
@@ -51,7 +54,7 @@ fn least(spacing: f32, limit: f32) -> f64 {
 /// How many of all points keep thin walls apart, where the others are reduced as to `count`.
 pub(crate) fn needed(tree: &Octree, features: &Features, count: usize) -> usize {
     let even = count as f64 / tree.points.len() as f64;
-    let apart = even.sqrt().recip() as f32;
+    let apart = THINNER * even.sqrt().recip() as f32;
     let Some(limits) = limits(tree, features, |i| features.spacing[i] * apart) else {
         return count;
     };

@@ -55,7 +55,7 @@ test('every wrong value is named, with what was expected', async () => {
   }
   const surface = [
     { reduce: true }, { accuracy: 0 }, { kernel: 'gauss' }, { smoothing: -1 }, { smoothing: 'none' }, { orient: 1 },
-    { propagation: 'local' }, { resolution: 0.5 }, { sharp: 'yes' }, { boundary: 'shut' },
+    { propagation: 'local' }, { resolution: 0.5 }, { sharp: 'yes' }, { boundary: 'shut' }, { scatter: 'none' },
   ];
   for (const options of surface) await badOption(reconstruct(cloud, options));
   await badOption(reduce(cloud, 3));

@@ -178,9 +178,9 @@ table! {
     /// What becomes of points through which there is no surface: foliage, dust, filled volumes.
     choice Scatter {
         /// The mesh has none of them. They stay in the reduced cloud, without a side, and the report's `scatter` counts them.
-        Drop "drop" "Leave out of the mesh",
+        Drop "drop",
         /// They are points of the surface like all others.
-        Keep "keep" "Keep",
+        Keep "keep",
     }
 
     /// Which inference chooses the signs of the local functions.
@@ -238,8 +238,7 @@ table! {
         /// With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.
         number max_hole: MaxHole = MaxHole::Auto, range(auto or from 0 to 1),
             flag("widest hole that is closed, a share of the diagonal");
-        choice scatter: Scatter = Scatter::Drop, flag("what becomes of foliage, dust and filled volumes"),
-            field("Scatter", "Points through which there is no surface: foliage, dust.");
+        choice scatter: Scatter = Scatter::Drop, flag("what becomes of foliage, dust and filled volumes");
         /// Say of every input point and every vertex how far scan and mesh are apart there: `SurfaceMesh.distances`.
         switch distances: bool = false;
         /// Remember what was measured of this cloud, and its reduction: the next call with `keep` does not do again what would
