@@ -27,6 +27,7 @@ pub(crate) mod noise;
 pub mod outliers;
 pub(crate) mod planes;
 pub(crate) mod steps;
+pub(crate) mod terraces;
 pub(crate) mod values;
 
 use crate::base::error::Result;
