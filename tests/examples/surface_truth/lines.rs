@@ -170,8 +170,9 @@ fn row(cloud: &Lines) {
     let [mean, rms, turned] = to_truth(cloud, &s);
     let far = far(&s);
     let missed = missed(cloud, &s);
-    let is_missed =
-        s.report.components != 1 || cloud.is_closed && s.report.boundary_edges > 0 || far > 0.02;
+    let is_missed = s.report.components != 1
+        || cloud.is_closed && s.report.boundary_edges > 0
+        || cloud.is_even && far > 0.02;
     println!(
         "{head} {:>6} {:>5} {:>6} {:>7.2} {:>7.2} {:>8.2} {:>8.3} {:>6.2} {:>6.2} {:>6}{}",
         s.report.reduce.output_points,
