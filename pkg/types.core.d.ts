@@ -1,6 +1,7 @@
 /**
  * The functions of the package without engine, queue and worker: synchronous calls into one single-threaded instance, in the
- * thread that makes them. For whoever has a worker of their own.
+ * thread that makes them. For whoever has a worker of their own. Files and samples are wasm of their own, which is loaded when they
+ * are asked for: `read`, `write` and `sample` wait for it.
  */
 import type {
   CallOptions, CloudInfo, EngineOptions, FileCloud, PointCloud, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
@@ -19,11 +20,10 @@ export interface Core {
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): ReducedCloud<P>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): SurfaceMesh<P>;
   inspect(cloud: PointCloud, options?: CallOptions): CloudInfo;
-  /** The one call that waits: readers are wasm of their own, which is loaded when a file of theirs comes. */
   read(data: File | Blob | ArrayBuffer | Uint8Array, options?: ReadOptions & CallOptions): Promise<FileCloud>;
   /** Without `meshopt`: `compress` of `pointweave/meshopt` takes the bytes of a GLB file. */
-  write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: Omit<WriteOptions, 'meshopt'> & CallOptions): Uint8Array;
-  sample(model: Model, options?: SampleOptions & CallOptions): PointCloud<Float32Array>;
+  write(result: PointCloud | ReducedCloud | SurfaceMesh, options?: Omit<WriteOptions, 'meshopt'> & CallOptions): Promise<Uint8Array>;
+  sample(model: Model, options?: SampleOptions & CallOptions): Promise<PointCloud<Float32Array>>;
 }
 
 /** Makes an instance. Nothing keeps it, or its memory, but who holds it. */

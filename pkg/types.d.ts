@@ -256,7 +256,12 @@ export type OutputFormat =
   | 'las'
   | 'laz'
   /** Triangles and colours; the origin is the item's transform. z is up, and the unit is the millimetre, where the cloud says its own. */
-  | '3mf';
+  | '3mf'
+  /**
+   * USDZ, one layer as text: everything. Positions are in single precision, and the origin is a translation in double precision. y is
+   * up, and the unit is the metre, where the cloud says its own. Colours are linear, attributes primvars.
+   */
+  | 'usdz';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
@@ -307,10 +312,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/` and `exports/`, or the URLs of the wasm files.
-   * All but the first two are loaded when a file of theirs is read or written. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/` and `samples/`, or
+   * the URLs of the wasm files. All but the first two are loaded when a file of theirs is read or written, or a sample made. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; samples?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.
@@ -383,4 +388,6 @@ export class PointweaveError extends Error {
   readonly expected?: unknown;
   /** What was there instead. */
   readonly found?: unknown;
+  /** Of a table of text that could not be read: its first rows, for a person who knows what its `columns` are. */
+  readonly table?: FileCloud['file']['table'];
 }

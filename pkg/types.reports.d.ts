@@ -82,6 +82,10 @@ export interface SurfaceReport extends ReduceReport {
   genus: number[];
   /** Holes that were closed and rims that were left open, the widest first. */
   holes: Hole[];
+  /** Triangles that cross others, after what could be mended was. */
+  selfIntersections: number;
+  /** Input points that the mesh leaves out, as there is no surface through them: foliage, dust, filled volumes. */
+  scatter: number;
   /** How often a sub-domain was split because its fit was not within the accuracy. */
   refinements: number;
   /** Of the fit at the input points. */

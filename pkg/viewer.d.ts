@@ -1,7 +1,7 @@
 /**
  * Clouds, meshes and GLBs on a canvas. It needs three.js (an optional peer of the package).
  */
-import type { FileCloud, PointCloud, ReducedCloud, SurfaceMesh } from './types.js';
+import type { PointCloud, ReducedCloud, SurfaceMesh, Unit } from './types.js';
 
 /** An axis that points up. */
 export type Axis = 'y' | 'z' | '-y' | '-z' | 'x' | '-x';
@@ -34,8 +34,6 @@ export interface Drawable extends Placed {
   up?: [number, number, number];
   /** It was scanned from the air: z is up. */
   seenFromAbove?: boolean;
-  /** Of a cloud that was read: formats of surveying have z up. */
-  file?: Pick<FileCloud['file'], 'format'>;
 }
 
 /** A GLB that was read by {@link readGlb}. */
@@ -103,7 +101,7 @@ export interface ViewerOptions {
   /** Turns slowly, unless the person prefers less motion. Default false. */
   autoRotate?: boolean;
   /** Default `'auto'`: what the data say; z of maps and of what is wide and flat; else y. */
-  up?: Axis | 'auto';
+  up?: Axis | [number, number, number] | 'auto';
   colors?: Partial<LayerColors>;
   insets?: Partial<Insets>;
 }
@@ -172,8 +170,8 @@ export interface Viewer extends EventTarget {
   get insets(): Insets;
   set insets(insets: Partial<Insets>);
   /** Assigning stands what is shown on that side, and fits it. */
-  up: Axis | 'auto';
-  /** What is up now, also where `up` is `'auto'`. */
+  up: Axis | [number, number, number] | 'auto';
+  /** What is up now, also where `up` is `'auto'`; of a direction the nearest axis. */
   readonly upright: Axis;
   interactive: boolean;
   autoRotate: boolean;
@@ -190,8 +188,11 @@ export interface Viewer extends EventTarget {
   fit(): void;
   /** Straight at a side, in parallel projection. */
   lookFrom(side: Side): void;
-  /** The mesh that is seen at a place of the canvas, in CSS pixels from its top left, and which of its triangles; null for none. */
-  pick(x: number, y: number): { layer: string; triangle: number } | null;
+  /**
+   * The mesh that is seen at a place of the canvas, in CSS pixels from its top left, which of its triangles, and the unit normal of
+   * the plane around that, towards the viewer, in the coordinates of the data; null for none. Costs a pass over the triangles.
+   */
+  pick(x: number, y: number): { layer: string; triangle: number; normal: [number, number, number] } | null;
   /** Draws at once; else it is drawn before the next frame. */
   draw(): void;
   /** The picture as it is shown, without background. Types and quality as `canvas.toBlob`. */
@@ -254,10 +255,11 @@ export function paintOf(name: PaintName, layer: 'points' | 'reduced' | 'mesh', s
 /** Every word of paints and legends. */
 export interface PaintWords {
   names: Record<PaintName, string>;
-  density: { title: string; note: string };
-  error: { titles: Record<'points' | 'reduced' | 'mesh', string>; note: string; unknown: string };
+  /** A note may say the scan's unit, where it is known. */
+  density: { title: string; note: string | ((unit?: Unit) => string) };
+  error: { titles: Record<'points' | 'reduced' | 'mesh', string>; note: string | ((unit?: Unit) => string); unknown: string };
   sharp: { title: string; sharp: string; smooth: string; note: (share: string, layer: 'points' | 'reduced' | 'mesh') => string };
-  /** A length in file units. */
+  /** A length in the scan's unit. */
   length: (value: number) => string;
   /** A share, as a percentage. */
   percent: (share: number) => string;

@@ -28,19 +28,31 @@
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+// Who changes a stage reads its docs with `--document-private-items`; for who calls it such names are text.
+#![allow(rustdoc::private_intra_doc_links)]
+// Of the base, what only stages call.
+#![cfg_attr(not(feature = "stages"), allow(dead_code))]
 
 // The wings, in the order in which data flows through them. Each imports only those above it.
 pub mod base;
 pub mod cloud;
+#[cfg(feature = "stages")]
 pub mod features;
+#[cfg(feature = "stages")]
 pub mod reduce;
+#[cfg(feature = "stages")]
 pub mod fit;
+#[cfg(feature = "stages")]
 pub mod orient;
+#[cfg(feature = "stages")]
 pub mod mesh;
+#[cfg(feature = "stages")]
 pub mod report;
+#[cfg(feature = "stages")]
 pub mod pipeline;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.
+#[cfg(any(feature = "samples", feature = "stages"))]
 pub mod samples;
 pub mod formats;
 
@@ -53,5 +65,7 @@ pub use base::params::{ReduceParams, SurfaceParams};
 pub use base::progress::{Progress, Stage};
 pub use base::{error, par, params, progress};
 pub use cloud::Cloud;
+#[cfg(feature = "stages")]
 pub use pipeline::{CloudInfo, ReducedCloud, Surface, inspect};
+#[cfg(feature = "stages")]
 pub use pipeline::{reconstruct, reconstruct_owned, reduce, reduce_owned};

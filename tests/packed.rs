@@ -283,6 +283,24 @@ fn archives_are_unpacked() {
     let archive = Archive::open(&gzip, Some("scan.xyz.gz")).expect("a gzip file");
     assert_eq!(archive.entries[0].name, "scan.xyz");
     assert_eq!(archive.unpack(&archive.entries[0]).as_ref(), Ok(&long));
+    // Members one after the other, with a name or without, are one content; what is behind the last is none.
+    let mut members = gzip.clone();
+    for part in [&long[..7], b"", &long] {
+        members.extend(b"\x1f\x8b\x08\0\0\0\0\0\0\x03");
+        members.extend(compress_to_vec(part, 6));
+        members.extend([1; 8]);
+    }
+    let whole = [&long[..], &long[..7], &long].concat();
+    for tail in [&b""[..], &[0; 300]] {
+        let file = [&members, tail].concat();
+        let archive = Archive::open(&file, None).expect("a gzip file");
+        assert_eq!(archive.unpack(&archive.entries[0]).as_ref(), Ok(&whole));
+    }
+    for cut in [members.len() - long.len() / 50, gzip.len() + 5] {
+        let archive = Archive::open(&members[..cut], None).expect("a gzip file");
+        let error = archive.unpack(&archive.entries[0]).unwrap_err();
+        assert_eq!(error.code(), "bad-file", "{cut}");
+    }
     let bomb = zip(&[("a", &vec![0; 1 << 20])], true);
     let mut lying = bomb.clone();
     let size = lying.len() - 22 - 46 - 1 + 24;

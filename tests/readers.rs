@@ -9,7 +9,9 @@ mod made;
 
 use made::Kept;
 use pointweave::base::rng::Rng;
-use pointweave::formats::{Format, Positions, RawCloud, Reading, detect, read};
+use pointweave::formats::{
+    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, detect, read, read_with,
+};
 
 fn values(cloud: &RawCloud) -> Vec<f64> {
     match &cloud.positions {
@@ -471,6 +473,20 @@ fn glb_has_quantised_and_sparse_positions() {
 }
 
 #[test]
+fn an_off_file_of_no_vertices_has_no_points() {
+    for (file, faces) in [("OFF\n0 0 0\n", 0), ("OFF 0 2 0\n3 0 1 2\n4 0 1 2 3\n", 2)] {
+        for mode in [FaceMode::Sample, FaceMode::Vertices] {
+            let options = ReadOptions {
+                faces: mode,
+                ..ReadOptions::default()
+            };
+            let cloud = read_with(file.as_bytes(), Format::Off, &options).unwrap();
+            assert_eq!((cloud.points(), cloud.faces), (0, faces), "{file}");
+        }
+    }
+}
+
+#[test]
 fn las_and_laz_of_every_point_format() {
     for format in 0..=10 {
         let version = if format < 6 { (1, 3) } else { (1, 4) };
@@ -512,12 +528,7 @@ fn las_and_laz_of_every_point_format() {
         // The crate writes no packed waveforms.
         if ![4, 5, 9, 10].contains(&format) {
             let packed = made::las(format, 70, version, true);
-            let mut expected = cloud;
-            if format >= 6 {
-                // Times in layers are left out.
-                expected.attributes.retain(|a| a.name != "gps_time");
-                expected.notes.clear();
-            }
+            let expected = cloud;
             let unpacked = read(&packed, Format::Las).unwrap();
             for (found, expected) in unpacked.attributes.iter().zip(&expected.attributes) {
                 assert_eq!(found, expected, "format {format}");
@@ -653,6 +664,27 @@ fn e57_places_its_scans() {
             ("intensity", 3.0)
         );
     }
+}
+
+#[test]
+fn e57_values_beyond_the_known_ones_and_its_invalid_states() {
+    const POINTS: usize = 42;
+    let cloud = read(&made::e57_with_extras(POINTS), Format::E57).unwrap();
+    let valid: Vec<usize> = (0..POINTS).filter(|i| i % 7 != 6 && i % 3 != 2).collect();
+    assert_eq!(cloud.points(), 2 * valid.len());
+    assert_eq!(
+        cloud.skipped,
+        [("invalid", 2 * (POINTS - valid.len()) as u64)]
+    );
+    // Columns that are all 0 are none; the scan without values has 0.
+    let of = |value: &dyn Fn(usize) -> f32| -> Vec<f32> {
+        let first = valid.iter().map(|&i| value(i));
+        first.chain(valid.iter().map(|_| 0.0)).collect()
+    };
+    assert_eq!(names(&cloud), ["rowIndex", "timeStamp", "temperature"]);
+    assert_eq!(cloud.attributes[0].values, of(&|i| i as f32 % 10.0));
+    assert_eq!(cloud.attributes[1].values, of(&|i| i as f32));
+    assert_eq!(cloud.attributes[2].values, of(&|i| 20.5 + i as f32));
 }
 
 #[test]

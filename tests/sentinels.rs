@@ -160,3 +160,31 @@ fn a_depth_frame_of_a_pcd_file_loses_its_holes() {
         (133, vec![("no-return", 67)])
     );
 }
+
+#[test]
+fn vertices_of_faces_without_area_lose_sentinels_too() {
+    let mut file = String::from(
+        "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n",
+    );
+    for i in 0..400 {
+        let height = if i % 10 == 3 { -9999.0 } else { 5.0 };
+        file += &format!("{} {} {height}\n", i % 20, i / 20);
+    }
+    // On one line.
+    file += "3 0 1 2\n";
+    for (keep_sentinels, points) in [(false, 360), (true, 400)] {
+        let options = ReadOptions {
+            keep_sentinels,
+            ..Default::default()
+        };
+        let cloud = read_with(file.as_bytes(), Format::Ply, &options).expect("a mesh");
+        assert_eq!(cloud.points(), points);
+        let skipped: &[(&str, u64)] = if keep_sentinels {
+            &[]
+        } else {
+            &[("no-data", 40)]
+        };
+        assert_eq!(cloud.skipped, skipped);
+    }
+}

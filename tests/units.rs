@@ -2,7 +2,9 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use pointweave::cloud::{Attribute, Crs, Unit, Viewpoints};
-use pointweave::formats::{Format, Output, Positions, RawCloud, WriteOptions, read, write};
+use pointweave::formats::{
+    Format, Output, Positions, RawCloud, Reading, WriteOptions, read, write,
+};
 use pointweave::progress::Silent;
 use pointweave::{ReduceParams, SurfaceParams};
 
@@ -438,4 +440,211 @@ fn a_camera_looks_along_z_and_robots_stand_on_it() {
     assert_eq!(pcd("0.1 0.2 1\n-0.5 0.4 2\n"), Some([0.0, -1.0, 0.0]));
     assert_eq!(pcd("0.1 0.2 1\n-3 0.4 2\n"), Some(UP_Z));
     assert_eq!(pcd("0.1 0.2 1\n0 0 -1\n"), Some(UP_Z));
+}
+
+/// A column of values for three points.
+fn column(name: &str, values: [f32; 3]) -> Attribute {
+    Attribute {
+        name: name.into(),
+        values: values.into(),
+    }
+}
+
+#[test]
+fn las_gives_attributes_back_under_their_names() {
+    let mut cloud = scan();
+    cloud.attributes = vec![
+        column("classification", [2.0, 6.0, 200.0]),
+        column("return_number", [1.0, 2.0, 3.0]),
+        column("scan_direction_flag", [0.0, 1.0, 1.0]),
+        column("edge_of_flight_line", [1.0, 0.0, 0.0]),
+        column("withheld", [0.0, 1.0, 0.0]),
+        column("scanner_channel", [0.0, 3.0, 1.0]),
+        column("scan_angle", [-12.0, 0.006 * 7.0, 0.006 * 2999.0]),
+        column("gps_time", [0.25, 1.5, 100.0]),
+        // No field holds these.
+        column("intensity", [0.0, 0.5, 1.0]),
+        column("user_data", [0.5, 1.5, 2.5]),
+        column("wave_packet", [0.0, 7.0, 9.0]),
+        column("red", [0.5, 0.25, 0.0]),
+        column("a name that is longer than 32 bytes: one", [1.0, 2.0, 3.0]),
+        column("a name that is longer than 32 bytes: two", [4.0, 5.0, 6.0]),
+    ];
+    let mut back = cloud.clone();
+    for _ in 0..2 {
+        let bytes = write(&back, None, Output::Las, WriteOptions::default()).unwrap();
+        back = read(&bytes, Format::Las).unwrap();
+        for (i, Attribute { name, values }) in cloud.attributes.iter().enumerate() {
+            let name = match i {
+                11 => "red (float)",
+                12 => "a name that is longer than 32 by",
+                13 => "a name that is longer than 32  2",
+                _ => name,
+            };
+            let found = back.attributes.iter().find(|one| one.name == name);
+            let found = found.map(|attribute| &attribute.values);
+            let near = found
+                .is_some_and(|found| found.iter().zip(values).all(|(a, b)| (a - b).abs() < 1e-5));
+            assert!(near, "{name}: {found:?}");
+        }
+        // With the normals, and how many returns there are.
+        assert_eq!(back.attributes.len(), cloud.attributes.len() + 4);
+        back.normals = None;
+    }
+}
+
+#[test]
+fn a_reference_system_too_long_for_a_record_comes_behind_the_points() {
+    let mut cloud = scan();
+    let wkt = format!("PROJCS[\"{}\",UNIT[\"metre\",1]]", "n".repeat(70_000));
+    cloud.crs = Some(Crs {
+        wkt: Some(wkt),
+        ..Crs::default()
+    });
+    for output in [Output::Las, Output::Laz] {
+        let bytes = write(&cloud, None, output, WriteOptions::default()).unwrap();
+        assert_eq!(read(&bytes, Format::Las).unwrap().crs, cloud.crs);
+        // In slices, too.
+        let mut reading = Reading::new(Some(Format::Las), None, bytes.len() as u64);
+        for slice in bytes.chunks(1000) {
+            reading.push(slice).unwrap();
+        }
+        while !reading.end().unwrap() {}
+        assert_eq!(reading.summary().crs, cloud.crs);
+    }
+}
+
+#[test]
+fn more_extra_bytes_than_las_describes_are_refused() {
+    let mut cloud = scan();
+    cloud.normals = None;
+    let columns = |count: usize| (0..count).map(|i| column(&format!("a{i}"), [0.5, i as f32, 2.0]));
+    cloud.attributes = columns(341).collect();
+    for output in [Output::Las, Output::Laz] {
+        let bytes = write(&cloud, None, output, WriteOptions::default()).unwrap();
+        let back = read(&bytes, Format::Las).unwrap();
+        assert!(
+            cloud
+                .attributes
+                .iter()
+                .all(|one| back.attributes.contains(one))
+        );
+    }
+    cloud.attributes = columns(342).collect();
+    let error = write(&cloud, None, Output::Las, WriteOptions::default()).unwrap_err();
+    assert_eq!(error.code(), "bad-length");
+    assert_eq!(error.found().as_deref(), Some("342"));
+}
+
+#[test]
+fn usdz_is_a_stored_layer_with_y_up_in_metres() {
+    let mut cloud = scan();
+    cloud.positions = Positions::F32(vec![0.0, 0.0, 0.0, 1000.0, 0.0, 0.0, 0.0, 500.0, 250.0]);
+    cloud.origin = Some([4e9, 0.0, 1000.0]);
+    cloud.unit = Some(Unit::Millimetre);
+    cloud.up = Some(UP_Z);
+    cloud.normals = None;
+    cloud.colors = Some(vec![255, 0, 0, 0, 255, 0, 0, 0, 255]);
+    cloud.attributes = vec![
+        column("1st value", [0.5, 1.0, 2.0]),
+        column("_1st_value", [3.0, 4.0, 5.0]),
+    ];
+    let options = WriteOptions::default();
+    let bytes = write(&cloud, Some(&[0, 1, 2]), Output::Usdz, options).unwrap();
+    assert_eq!(&bytes[..4], b"PK\x03\x04");
+    let short = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+    assert_eq!(short(8), 0, "stored");
+    let start = 30 + short(26) + short(28);
+    assert_eq!(start % 64, 0);
+    let size = u32::from_le_bytes(*bytes[22..].first_chunk().unwrap()) as usize;
+    let layer = String::from_utf8(bytes[start..start + size].to_vec()).unwrap();
+    for line in [
+        "    metersPerUnit = 1\n",
+        "    upAxis = \"Y\"\n",
+        "    double3 xformOp:translate = (4000000, 1, 0)\n",
+        "        float3[] extent = [(0, 0, -0.5), (1, 0.25, 0)]\n",
+        "        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 0.25, -0.5)]\n",
+        "        int[] faceVertexIndices = [0, 1, 2]\n",
+        "        color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1)] (interpolation = \"vertex\")\n",
+        "        float[] primvars:_1st_value = [0.5, 1, 2] (interpolation = \"vertex\")\n",
+        "        float[] primvars:_1st_value_ = [3, 4, 5] (interpolation = \"vertex\")\n",
+    ] {
+        assert!(layer.contains(line), "{line} in {layer}");
+    }
+    let points = write(&cloud, None, Output::Usdz, options).unwrap();
+    assert!(
+        points
+            .windows(19)
+            .any(|part| part == b"def Points \"Points\"")
+    );
+    assert_eq!(
+        write(
+            &RawCloud::new(Positions::F32(vec![])),
+            None,
+            Output::Usdz,
+            options
+        )
+        .map_err(|error| error.code()),
+        Err("empty-cloud")
+    );
+}
+
+#[test]
+fn times_in_layers_are_those_of_the_same_points_unpacked() {
+    const POINTS: usize = 120_000;
+    let mut state = 7u32;
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    let mut cloud = RawCloud::new(Positions::F32(vec![]));
+    // The first time is so small that times are not counted from it.
+    let mut columns = [0.5, 1.0, 1.0, 0.0].map(|first: f32| vec![first]);
+    // Five scanners take turns; pulses of several returns have one time; clocks run, stand, jump, and go back.
+    let mut clocks = [0.0f32, 1e3, 5e5, 1e6, -3e4];
+    let mut positions = vec![0.0; 3];
+    while columns[0].len() < POINTS {
+        let scanner = random(5) as usize;
+        let clock = &mut clocks[scanner];
+        *clock += match random(12) {
+            0 => random(1_000_000) as f32,
+            1 => -(random(5000) as f32),
+            2 => 0.0,
+            3 => 0.001 * random(1000) as f32,
+            _ => 0.25,
+        };
+        let returns = 1 + random(4);
+        for number in 1..=returns {
+            let values = [*clock, number as f32, returns as f32, (scanner % 4) as f32];
+            columns
+                .iter_mut()
+                .zip(values)
+                .for_each(|(column, value)| column.push(value));
+            positions.extend([0; 3].map(|_| random(100_000) as f32 / 1024.0));
+        }
+    }
+    cloud.positions = Positions::F32(positions);
+    let names = [
+        "gps_time",
+        "return_number",
+        "number_of_returns",
+        "scanner_channel",
+    ];
+    cloud.attributes = names
+        .into_iter()
+        .zip(columns)
+        .map(|(name, values)| Attribute {
+            name: name.into(),
+            values,
+        })
+        .collect();
+    let [plain, packed] = [Output::Las, Output::Laz].map(|output| {
+        let bytes = write(&cloud, None, output, WriteOptions::default()).unwrap();
+        read(&bytes, Format::Las).unwrap()
+    });
+    for attribute in &cloud.attributes {
+        for read in [&plain, &packed] {
+            assert!(read.attributes.contains(attribute), "{}", attribute.name);
+        }
+    }
 }

@@ -8,9 +8,9 @@ import { track } from './progress.js';
 /** @import { Build, Progress } from '../types.js' */
 
 /**
- * A function of `src/js/wasm.rs` and what it takes; a progress callback is added as the last argument.
+ * A function of `src/js` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'unpack' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'openArchive' | 'unpack' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
@@ -22,7 +22,10 @@ import { track } from './progress.js';
  * } & { [call in Request['call']]?: (...args: any[]) => any }} Bindings
  */
 
-/** The engine's builds, and those that hold readers of files, decoders of pictures, or writers alone. @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports'} WasmBuild */
+/**
+ * The engine's builds, and those that hold readers of files, decoders of pictures, writers, or samples alone.
+ * @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports' | 'samples'} WasmBuild
+ */
 
 /**
  * @typedef {object} CoreOptions

@@ -1,11 +1,14 @@
-/** Calls into one instance in the caller's thread, all but `read` synchronous: `direct.js` and `direct.node.js` export them. */
+/**
+ * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
+ * `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
+ */
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
-import { EXPORTED, checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -13,32 +16,20 @@ import { byteSourceOf } from '../files/byte-source.js';
 
 const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
 
+/** @typedef {{ platform: Parameters<typeof makeLoad>[0], wasmUrl: import('../types.js').EngineOptions['wasmUrl'] }} Place where wasm is loaded from */
+
 /**
- * What wasm takes, of what a call was given.
- * @type {{ [call in Exclude<keyof import('../types.core.js').Core, 'read'>]: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
+ * What wasm takes, of what a synchronous call was given.
+ * @type {{ [call in 'reduce' | 'reconstruct' | 'inspect']: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
  */
 const ARGUMENTS = {
   reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
   reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
   inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
-  write: (result, own, transfer) => [resultArgument(result, transfer), ownWriters(own)],
-  sample: (model, own) => [{ model: checkModel(model), ...own }],
 };
 
-/** Compression, and writers that are wasm of their own, wait for their loading, and no call here waits. @param {Record<string, any>} own */
-function ownWriters({ meshopt, up, ...plain }) {
-  if (EXPORTED.includes(plain.format)) {
-    const message = `${plain.format} is not written here: the engine's write does it`;
-    throw new PointweaveError({ code: 'bad-option', message, expected: 'ply, xyz, glb, obj or stl', found: plain.format });
-  }
-  if (!meshopt) return { ...plain, ...(up && { up: direction(up) }) };
-  throw new PointweaveError({
-    code: 'bad-option',
-    message: "meshopt is not done here: give what write makes to compress of 'pointweave/meshopt'",
-    expected: 'false',
-    found: meshopt,
-  });
-}
+/** Calls that wait for wasm of their own. @type {Record<string, (place: Place, subject: any, options: unknown) => Promise<any>>} */
+const WAITING = { read, write, sample };
 
 /**
  * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadBindings'>} platform
@@ -48,12 +39,15 @@ export function makeLoad(platform) {
   return async (options) => {
     const { wasmUrl } = checkCoreOptions(options);
     const core = await keepAlive(start(platform, wasmUrl));
-    const calls = Object.entries(ARGUMENTS).map(([call, args]) => [
+    const calls = Object.keys(ARGUMENTS).map((call) => [
       call,
-      (/** @type {any} */ subject, /** @type {any} */ options) =>
-        run(core, /** @type {keyof typeof ARGUMENTS} */ (call), (own, transfer) => args(subject, own, transfer), options),
+      (/** @type {any} */ subject, /** @type {any} */ options) => run(core, /** @type {keyof typeof ARGUMENTS} */ (call), subject, options),
     ]);
-    return Object.fromEntries([...calls, ['read', (/** @type {any} */ data, /** @type {any} */ options) => read(platform, wasmUrl, data, options)]]);
+    const waiting = Object.entries(WAITING).map(([call, f]) => [
+      call,
+      (/** @type {any} */ subject, /** @type {any} */ options) => f({ platform, wasmUrl }, subject, options),
+    ]);
+    return Object.fromEntries([...calls, ...waiting]);
   };
 }
 
@@ -69,38 +63,66 @@ async function start(platform, wasmUrl) {
 /**
  * @param {Core} core
  * @param {keyof typeof ARGUMENTS} call
- * @param {(own: Record<string, any>, transfer?: boolean) => unknown[]} args
+ * @param {any} subject
  * @param {unknown} options
  */
-function run(core, call, args, options) {
+function run(core, call, subject, options) {
   const { own, transfer, signal, onProgress } = checkOptions(call, options);
   signal?.throwIfAborted();
   if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
-  return signed(runHere(core, { call, args: args(own, transfer) }, { signal, onProgress }), CHOICE);
+  return signed(runHere(core, { call, args: ARGUMENTS[call](subject, own, transfer) }, { signal, onProgress }), CHOICE);
 }
 
 /**
- * Readers are wasm of their own, which is loaded when a file of theirs comes: the one call that waits.
- * @param {Parameters<typeof makeLoad>[0]} platform
- * @param {import('../types.js').EngineOptions['wasmUrl']} wasmUrl
- * @param {any} data
- * @param {unknown} options
+ * Does something with an instance that is made for it.
+ * @template T
+ * @param {Place} place
+ * @param {Exclude<import('./core.js').WasmBuild, import('../types.js').Build>} build
+ * @param {import('./worker-host.js').Watch} watch
+ * @param {(ask: (request: import('./core.js').Request) => Promise<any>) => Promise<T>} job
+ * @returns {Promise<T>}
  */
-async function read({ compile, loadBindings }, wasmUrl, data, options) {
+async function withModule({ platform: { compile, loadBindings }, wasmUrl }, build, watch, job) {
+  const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
+  const host = await inProcessHost(bindings, { build, module });
+  return keepAlive(job((request) => host.run(request, watch)));
+}
+
+/** @param {Place} place @param {any} data @param {unknown} options */
+async function read(place, data, options) {
   const { own, transfer, signal = NEVER, onProgress } = checkOptions('read', options);
   signal.throwIfAborted();
   const file = byteSourceOf(data, transfer);
   /** @type {import('../files/archive.js').Open} */
-  const open = async (build, job) => {
-    const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
-    const host = await inProcessHost(bindings, { build, module });
-    try {
-      return await keepAlive(job((request) => host.run(request, { signal })));
-    } catch (error) {
-      throw readerError(error, build);
-    }
-  };
+  const open = (build, job) => withModule(place, build, { signal }, job).catch((error) => {
+    throw readerError(error, build);
+  });
   return readScan(open, file, { name: data.name, ...own }, { signal, onProgress });
+}
+
+/** @param {Place} place @param {any} result @param {unknown} options */
+async function write(place, result, options) {
+  const { own, transfer, ...watch } = checkOptions('write', options);
+  const { meshopt, up, ...plain } = own;
+  if (meshopt) {
+    throw new PointweaveError({
+      code: 'bad-option',
+      message: "meshopt is not done here: give what write makes to compress of 'pointweave/meshopt'",
+      expected: 'false',
+      found: meshopt,
+    });
+  }
+  watch.signal?.throwIfAborted();
+  const args = [resultArgument(result, transfer), { ...plain, ...(up && { up: direction(up) }) }];
+  return withModule(place, 'exports', watch, (ask) => ask({ call: 'write', args }));
+}
+
+/** @param {Place} place @param {any} model @param {unknown} options */
+async function sample(place, model, options) {
+  const { own, ...watch } = checkOptions('sample', options);
+  watch.signal?.throwIfAborted();
+  const args = [{ model: checkModel(model), ...own }];
+  return withModule(place, 'samples', watch, (ask) => ask({ call: 'sample', args }));
 }
 
 const NEVER = new AbortController().signal;

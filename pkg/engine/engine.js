@@ -9,7 +9,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
-import { EXPORTED, checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { checkEngineOptions, checkModel, checkOptions } from './options.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -127,17 +127,14 @@ export class Engine {
     const { meshopt, ...plain } = own;
     if (plain.up) plain.up = direction(plain.up);
     const compress = await compressorFor(meshopt);
-    /** @type {Request} */
-    const request = { call: 'write', args: [resultArgument(result, transfer), plain] };
-    if (EXPORTED.includes(plain.format)) return this.#queued(watch, (signal) => this.#withModule('exports', signal, (ask) => ask(request)));
-    const bytes = await this.#run(request, watch);
+    const bytes = await this.#runIn('exports', { call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
     return compress ? compress(bytes) : bytes;
   }
 
   /** @param {any} model @param {any} [options] */
   async sample(model, options) {
     const { own, transfer, ...watch } = this.#check('sample', options);
-    return this.#run({ call: 'sample', args: [{ model: checkModel(model), ...own }] }, watch);
+    return this.#runIn('samples', { call: 'sample', args: [{ model: checkModel(model), ...own }] }, watch);
   }
 
   /** Ends the worker or the pool. The call under way and those that wait reject with `disposed`. */
@@ -215,6 +212,16 @@ export class Engine {
   }
 
   /**
+   * Waits for the calls before, then has a module of its own do this one.
+   * @param {Exclude<WasmBuild, Build>} build
+   * @param {Request} request
+   * @param {Watch} watch
+   */
+  async #runIn(build, request, watch) {
+    return this.#queued(watch, (signal) => this.#withModule(build, signal, (ask) => ask(request, watch.onProgress)));
+  }
+
+  /**
    * Has the host do a request.
    * @param {Request} request
    * @param {Watch & { signal: AbortSignal }} watch
@@ -247,11 +254,11 @@ export class Engine {
   }
 
   /**
-   * Does something with the wasm of a reader, of pictures or of writers, which is loaded for it and ends after it, with its memory.
+   * Does something with the wasm of a reader, of pictures, writers or samples, which is loaded for it and ends after it, with its memory.
    * @template T
    * @param {Exclude<WasmBuild, Build>} build
    * @param {AbortSignal} signal
-   * @param {(ask: (request: Request) => Promise<any>) => Promise<T>} job
+   * @param {(ask: (request: Request, onProgress?: Watch['onProgress']) => Promise<any>) => Promise<T>} job
    * @returns {Promise<T>}
    */
   async #withModule(build, signal, job) {
@@ -262,7 +269,7 @@ export class Engine {
       ? workerHost(() => startWorker(this.#workerUrl), { build, threads: 1, module })
       : inProcessHost(await loadBindings(build), { build, module }));
     try {
-      return await job((request) => host.run(request, { signal }));
+      return await job((request, onProgress) => host.run(request, { signal, onProgress }));
     } finally {
       host.end();
     }

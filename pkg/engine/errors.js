@@ -10,12 +10,13 @@
  * @property {number} [index]
  * @property {unknown} [expected]
  * @property {unknown} [found]
+ * @property {import('../types.js').FileCloud['file']['table']} [table]
  */
 
 /** Thrown by every function of the package, except that an abort rejects with its signal's reason. */
 export class PointweaveError extends Error {
   /** @param {ErrorRecord} record */
-  constructor({ code, message, index, expected, found }) {
+  constructor({ code, message, index, expected, found, table }) {
     super(message);
     this.name = 'PointweaveError';
     /** Stable and meant for programs, such as `'empty-cloud'`; the README lists them all. */
@@ -26,6 +27,8 @@ export class PointweaveError extends Error {
     this.expected = expected;
     /** What was there instead. */
     this.found = found;
+    /** Of a table of text that could not be read: its first rows, for a person who knows what its columns are. */
+    this.table = table;
   }
 }
 
@@ -36,8 +39,8 @@ export class PointweaveError extends Error {
  */
 export function toRecord(error) {
   if (error instanceof PointweaveError) {
-    const { code, message, index, expected, found } = error;
-    return { code, message, index, expected, found };
+    const { code, message, index, expected, found, table } = error;
+    return { code, message, index, expected, found, table };
   }
   return { code: 'internal', message: error instanceof Error ? error.message : String(error) };
 }

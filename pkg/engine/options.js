@@ -21,16 +21,13 @@ const READ = {
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
   up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },
   unit: { ...choice(...UNITS), fallback: undefined },
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
-
-/** Formats whose writer is a build of its own. */
-export const EXPORTED = ['pcd', 'las', 'laz', '3mf'];
 
 const MODEL = choice('duck', 'pig', 'part');
 
@@ -41,7 +38,7 @@ const SAMPLE = {
 };
 
 /** Folders of `pkg/wasm`. */
-const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports'];
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'samples'];
 
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),

@@ -1,4 +1,7 @@
-/** Runs requests one at a time, in this thread, in a worker, or in a worker with a thread pool. */
+/**
+ * Runs requests one at a time, in this thread, in a worker, or in a worker with a thread pool; and stops one when its signal is
+ * aborted or its `onProgress` throws.
+ */
 import { buffersOf } from './arrays.js';
 import { Core } from './core.js';
 import { PointweaveError, isFatal } from './errors.js';
@@ -29,8 +32,11 @@ import { PointweaveError, isFatal } from './errors.js';
  * @property {() => void} terminate
  */
 
-/** A call that keeps what it has measured may take so long to stop by itself; then its worker is terminated, as others are at once. */
-const GRACE_MS = 60;
+/**
+ * A call that keeps what it has measured may take so long to stop by itself; then its worker is terminated, as others are at
+ * once. Only the next call waits for it. It stops within 20 ms; a machine with other work to do takes longer.
+ */
+const GRACE_MS = 1000;
 
 /** A pool that has not started by then never will, and the single-threaded build takes over. */
 const POOL_LIMIT_MS = 30_000;

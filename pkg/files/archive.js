@@ -31,26 +31,33 @@ const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
 export async function readScan(open, file, { beside, ...options }, watch) {
   const find = finder(beside);
   if (options.format !== undefined || !(await isArchive(file))) return readOne(open, file, options, watch, find);
-  const name = options.name ?? '';
-  /** @param {number} [wanted] the part whose content is wanted @returns {Promise<{ name: string, content: Uint8Array }[]>} */
-  const unpack = (wanted) => open('packed', async (ask) => ask({ call: 'unpack', args: [await wholeOf(file, watch.signal), name, wanted] }));
-  const entries = await unpack();
-  if (entries.some((entry) => /^3D\/.*\.model$/i.test(entry.name))) return readOne(open, file, { ...options, format: '3mf' }, watch, find);
-  const chosen = scansOf(entries);
-  if (chosen.length === 0) throw noScan(entries);
-  // What a mesh names is in the archive, too.
-  const inside = async (/** @type {string} */ name) => {
-    const at = entries.findIndex((entry) => lastOf(entry.name) === lastOf(name));
-    return at < 0 ? find(name) : (await unpack(at))[at].content;
-  };
-  const clouds = [];
-  for (const [i, at] of chosen.entries()) {
-    const { content } = (await unpack(at))[at];
-    const inner = { ...options, name: entries[at].name || undefined };
-    const part = { ...watch, onProgress: watch.onProgress && partOf(watch.onProgress, i, chosen.length) };
-    clouds.push(await readOne(open, byteSourceOf(content, true), inner, part, inside));
-  }
-  return merged(clouds, chosen.map((at) => entries[at].name));
+  const read = await open('packed', async (ask) => {
+    /** @type {string[]} */
+    const names = await ask({ call: 'openArchive', args: [await wholeOf(file, watch.signal), options.name ?? ''] });
+    if (names.some((name) => /^3D\/.*\.model$/i.test(name))) return undefined;
+    const chosen = scansOf(names);
+    if (chosen.length === 0) throw noScan(names);
+    const unpack = (/** @type {number} */ part) => ask({ call: 'unpack', args: [part] });
+    // What a mesh names is in the archive, too.
+    const inside = async (/** @type {string} */ name) => {
+      const at = names.findIndex((other) => lastOf(other) === lastOf(name));
+      return at < 0 ? find(name) : unpack(at);
+    };
+    const clouds = [];
+    for (const [i, at] of chosen.entries()) {
+      const content = byteSourceOf(await unpack(at), true);
+      const inner = { ...options, name: names[at] || undefined };
+      const part = { ...watch, onProgress: watch.onProgress && partOf(watch.onProgress, i, chosen.length) };
+      // Its error is that of its own reader.
+      const outcome = await readOne(open, content, inner, part, inside).catch((error) => ({ error }));
+      if ('error' in outcome) return outcome;
+      clouds.push(outcome);
+    }
+    return merged(clouds, chosen.map((at) => names[at]));
+  });
+  if (!read) return readOne(open, file, { ...options, format: '3mf' }, watch, find);
+  if ('error' in read) throw read.error;
+  return read;
 }
 
 /**
@@ -92,17 +99,17 @@ async function wholeOf(file, signal) {
   return whole;
 }
 
-/** Which of the entries are scans. @param {{ name: string }[]} entries */
-function scansOf(entries) {
-  if (entries.length === 1) return [0];
-  const matching = (/** @type {RegExp} */ names) => entries.flatMap(({ name }, i) => (names.test(name) && !HIDDEN.test(name) ? [i] : []));
+/** Which of the parts are scans. @param {string[]} names */
+function scansOf(names) {
+  if (names.length === 1) return [0];
+  const matching = (/** @type {RegExp} */ wanted) => names.flatMap((name, i) => (wanted.test(name) && !HIDDEN.test(name) ? [i] : []));
   const scans = matching(SCAN);
   return scans.length > 0 ? scans : matching(TEXT);
 }
 
-/** @param {{ name: string }[]} entries */
-function noScan(entries) {
-  const found = entries.length === 0 ? 'no file' : entries.slice(0, 5).map(({ name }) => name).join(', ') + (entries.length > 5 ? ' …' : '');
+/** @param {string[]} names */
+function noScan(names) {
+  const found = names.length === 0 ? 'no file' : names.slice(0, 5).join(', ') + (names.length > 5 ? ' …' : '');
   const expected = 'an archive with a scan in it';
   return new PointweaveError({ code: 'unsupported-file', message: `this archive cannot be read: it holds ${found}; expected a scan`, expected, found });
 }

@@ -29,6 +29,8 @@ const quarter = (/** @type {number} */ x, /** @type {number} */ z, turns = 1) =>
 /** What brings each axis up. @type {Record<Axis, Quaternion>} */
 const STAND = { y: new Quaternion(), z: quarter(-1, 0), '-y': quarter(1, 0, 2), '-z': quarter(1, 0), x: quarter(0, 1), '-x': quarter(0, -1) };
 
+const UPWARDS = new Vector3(0, 1, 0);
+
 /** The camera's angles: around the upright axis, and down from it. @type {Record<Side, [number, number]>} */
 const SIDES = {
   front: [0, Math.PI / 2],
@@ -130,7 +132,7 @@ export class Orbit {
     return this.#camera.position.distanceTo(this.#target);
   }
 
-  /** Takes something new to look at. @param {Float32Array} outline a few points of it @param {Axis} up */
+  /** Takes something new to look at. @param {Float32Array} outline a few points of it @param {Axis | [number, number, number]} up */
   frame(outline, up) {
     this.#outline = outline;
     this.stand(up);
@@ -138,9 +140,10 @@ export class Orbit {
     this.#untouched = true;
   }
 
-  /** @param {Axis} up */
+  /** @param {Axis | [number, number, number]} up */
   stand(up) {
-    this.#root.quaternion.copy(STAND[up]);
+    if (typeof up === 'string') this.#root.quaternion.copy(STAND[up]);
+    else this.#root.quaternion.setFromUnitVectors(new Vector3(...up).normalize(), UPWARDS);
     this.#root.updateMatrixWorld();
     this.#changed('program');
   }

@@ -53,7 +53,7 @@ const PAINTERS = {
     const frame = frameIn(subject);
     const spacing = localSpacing(toFrame(source, frame)).map((distance) => distance * frame.diagonal);
     const [low, high] = [quantile(spacing, 0.02), quantile(spacing, 0.98)];
-    return { colors: colorize(spacing, low, high), legend: { ...words.density, low, high, words: words.length } };
+    return { colors: colorize(spacing, low, high), legend: { title: words.density.title, note: noteOf(words.density.note, subject), low, high, words: words.length } };
   },
 
   error(layer, subject, { error, length, percent }) {
@@ -69,7 +69,7 @@ const PAINTERS = {
     const high = Math.max(quantile(distances.points, 0.99), 1e-9);
     const words = (/** @type {number} */ share) => `${length(share * diagonal)}\n${percent(share)}`;
     const bare = layer === 'mesh' && values.some(Number.isNaN) ? error.unknown : '';
-    return { colors: colorize(values, 0, high), legend: { title: error.titles[layer], note: error.note + bare, low: 0, high, words } };
+    return { colors: colorize(values, 0, high), legend: { title: error.titles[layer], note: noteOf(error.note, subject) + bare, low: 0, high, words } };
   },
 
   sharp(layer, subject, { sharp: words, percent }) {
@@ -85,6 +85,11 @@ const PAINTERS = {
     return { colors, legend: { title: words.title, note, kinds: [[css(SHARP), words.sharp], [css(SMOOTH), words.smooth]] } };
   },
 };
+
+/** A note of lengths, in the scan's unit. @param {string | ((unit?: import('../types.js').Unit) => string)} note @param {Subject} subject */
+function noteOf(note, { cloud: { unit } }) {
+  return typeof note === 'string' ? note : note(unit);
+}
 
 /** What a layer draws. @param {Name} layer @param {Subject} subject */
 function sourceOf(layer, { cloud, reduced, mesh }) {

@@ -1,13 +1,21 @@
-/** Which triangle lies under a place of the picture. */
+/** Which triangle lies under a place of the picture, and how the surface around it stands. */
 import { Raycaster, Vector3 } from 'three';
 
-/** @import { PerspectiveCamera } from 'three' */
+/** @import { BufferGeometry, Mesh, PerspectiveCamera } from 'three' */
 /** @import { Layer } from './stage.js' */
+
+/** The plane of a triangle is that of what lies around it within this share of the mesh's size … */
+const REACH = 0.1;
+/** … and is inclined by no more, as a cosine: 20°. */
+const ALIKE = Math.cos(Math.PI / 9);
+/** So often the plane is found from what is like it. */
+const ROUNDS = 3;
 
 const ray = new Raycaster();
 
 /**
- * The index of the nearest triangle of a layer, counted through its objects; -1 where there is none.
+ * The nearest triangle of a layer: its index, counted through the layer's objects, and the direction of the plane around it that
+ * looks at the camera, in the coordinates of the data. `null` where there is none.
  * @param {Layer} layer
  * @param {PerspectiveCamera} camera which may have the projection of another kind
  * @param {number} x from -1 at the left of the picture to 1
@@ -17,10 +25,40 @@ export function triangleAt({ bit, objects }, camera, x, y) {
   const from = new Vector3(x, y, -1).unproject(camera);
   ray.set(from, new Vector3(x, y, 1).unproject(camera).sub(from).normalize());
   ray.layers.set(bit);
-  const meshes = objects.filter(({ type }) => type !== 'Points');
+  const meshes = /** @type {Mesh[]} */ (objects.filter(({ type }) => type !== 'Points'));
   const [hit] = ray.intersectObjects(meshes, false);
-  if (!hit) return -1;
-  const before = meshes.slice(0, meshes.findIndex((mesh) => mesh === hit.object));
-  const count = before.reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
-  return count + Number(hit.faceIndex);
+  if (!hit) return null;
+  const at = meshes.findIndex((mesh) => mesh === hit.object);
+  const before = meshes.slice(0, at).reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
+  const { geometry, matrixWorld } = meshes[at];
+  const plane = planeAround(geometry, Number(hit.faceIndex));
+  if (plane.clone().transformDirection(matrixWorld).dot(ray.ray.direction) > 0) plane.negate();
+  return { triangle: before + Number(hit.faceIndex), normal: /** @type {[number, number, number]} */ (plane.toArray()) };
+}
+
+/** The mean direction, by area, of the faces near one that stand as it does. @param {BufferGeometry} geometry @param {number} face */
+function planeAround(geometry, face) {
+  const { index } = geometry;
+  const positions = geometry.getAttribute('position');
+  const [a, b, c, center, across] = Array.from({ length: 5 }, () => new Vector3());
+  /** Centre of a face, and its direction as long as twice its area. @param {number} i */
+  const read = (i) => {
+    [a, b, c].forEach((corner, k) => corner.fromBufferAttribute(positions, index ? index.getX(3 * i + k) : 3 * i + k));
+    center.copy(a).add(b).add(c).divideScalar(3);
+    across.copy(b).sub(a).cross(c.sub(a));
+  };
+  read(face);
+  const middle = center.clone();
+  const plane = across.clone().normalize();
+  if (!geometry.boundingSphere) geometry.computeBoundingSphere();
+  const reach = REACH * (geometry.boundingSphere?.radius ?? 0);
+  for (let round = 0; round < ROUNDS; round++) {
+    const sum = new Vector3();
+    for (let i = 0; i < (index ?? positions).count / 3; i++) {
+      read(i);
+      if (center.distanceTo(middle) <= reach && across.dot(plane) >= ALIKE * across.length()) sum.add(across);
+    }
+    if (sum.lengthSq() > 0) plane.copy(sum).normalize();
+  }
+  return plane;
 }

@@ -9,7 +9,7 @@ import { sharedPainter } from './painter.js';
 import { triangleAt } from './pick.js';
 import { Size } from './size.js';
 import { ALWAYS, Stage } from './stage.js';
-import { likelyUp } from './upright.js';
+import { likelyUp, nearestAxis } from './upright.js';
 import { inSight } from './watching.js';
 
 /**
@@ -52,11 +52,11 @@ class CanvasViewer extends EventTarget {
   #size;
   /** @type {Frame | null} */
   #frame = null;
-  /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'seenFromAbove' | 'file' | 'origin'>} */
+  /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'seenFromAbove' | 'origin'>} */
   #first = {};
   /** @type {string | Split} */
   #view = 'points';
-  /** @type {Axis | 'auto'} */
+  /** @type {Axis | [number, number, number] | 'auto'} */
   #up;
   /** @type {Insets} */
   #insets = NO_INSETS;
@@ -107,7 +107,7 @@ class CanvasViewer extends EventTarget {
       Object.entries(layers).forEach(([name, objects], i) => this.#stage.add(name, objects, i ? new Float32Array() : outline));
       this.#view = 'mesh' in layers ? 'mesh' : 'points';
       this.#divide();
-      this.#orbit.frame(outline, this.upright);
+      this.#orbit.frame(outline, this.#standing);
     } else {
       this.#frame = frame ?? null;
       this.set(what.indices ? 'mesh' : 'points', what);
@@ -122,9 +122,9 @@ class CanvasViewer extends EventTarget {
     this.#frame ??= frameOf(/** @type {Drawable} */ (what));
     this.#stage.set(name, what, this.#frame);
     if (what && first) {
-      const { up, seenFromAbove, file, origin } = what;
-      this.#first = { up, seenFromAbove, file, origin };
-      this.#orbit.frame(this.#stage.outline, this.upright);
+      const { up, seenFromAbove, origin } = what;
+      this.#first = { up, seenFromAbove, origin };
+      this.#orbit.frame(this.#stage.outline, this.#standing);
       this.view = name;
     } else this.#orbit.widen(this.#stage.outline);
     this.#ask();
@@ -209,13 +209,19 @@ class CanvasViewer extends EventTarget {
   set up(up) {
     this.#up = up;
     if (!this.#frame) return;
-    this.#orbit.stand(this.upright);
+    this.#orbit.stand(this.#standing);
     this.#orbit.fit();
   }
 
   get upright() {
-    if (this.#up !== 'auto') return this.#up;
-    return likelyUp(this.#first, this.#frame?.size ?? [1, 1, 1]);
+    if (this.#up === 'auto') return likelyUp(this.#first, this.#frame?.size ?? [1, 1, 1]);
+    return typeof this.#up === 'string' ? this.#up : nearestAxis(this.#up);
+  }
+
+  /** What is up now: an axis, or a direction between them. */
+  get #standing() {
+    const up = this.#up === 'auto' ? this.#first.up : this.#up;
+    return Array.isArray(up) && up.filter((x) => Math.abs(x) > 1e-6 * Math.hypot(...up)).length > 1 ? up : this.upright;
   }
 
   get interactive() {
@@ -277,8 +283,8 @@ class CanvasViewer extends EventTarget {
     if (!side || !layer) return null;
     this.#orbit.update(performance.now());
     this.camera.updateMatrixWorld();
-    const triangle = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
-    return triangle < 0 ? null : { layer: side.layer, triangle };
+    const found = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
+    return found && { layer: side.layer, ...found };
   }
 
   /** @param {string} [type] @param {number} [quality] */

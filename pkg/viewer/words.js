@@ -15,10 +15,10 @@ export const PAINT_WORDS = {
     error: 'Distance between scan and mesh',
     sharp: 'Sharp places',
   },
-  density: { title: 'Distance between neighbours', note: 'about, in file units' },
+  density: { title: 'Distance between neighbours', note: (unit) => `about, in ${unit ?? 'file units'}` },
   error: {
     titles: { points: 'Distance to the mesh', reduced: 'Distance of its points to the mesh', mesh: 'Distance to the scan' },
-    note: 'in file units and of the diagonal; 1 % of the points are beyond',
+    note: (unit) => `in ${unit ?? 'file units'} and of the diagonal; 1 % of the points are beyond`,
     unknown: '; grey: no points there',
   },
   sharp: {

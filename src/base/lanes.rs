@@ -55,16 +55,29 @@ impl Lanes {
         Lanes(f32x8::new(self.to_array().map(f)))
     }
 
-    /// The smaller of each pair.
+    /// The smaller of each pair: `self` where it is less, else `o`, so that equals and NaN are defined.
     #[inline(always)]
     pub fn min(self, o: Lanes) -> Lanes {
-        self.less(o, self, o)
+        // One instruction where there is one: minps a b is a < b ? a : b, pmin a b is b < a ? b : a.
+        if cfg!(target_feature = "sse") {
+            Lanes(self.0.fast_min(o.0))
+        } else if cfg!(target_feature = "simd128") {
+            Lanes(o.0.fast_min(self.0))
+        } else {
+            self.less(o, self, o)
+        }
     }
 
-    /// The larger of each pair.
+    /// The larger of each pair: `self` where it is larger, else `o`.
     #[inline(always)]
     pub fn max(self, o: Lanes) -> Lanes {
-        o.less(self, self, o)
+        if cfg!(target_feature = "sse") {
+            Lanes(self.0.fast_max(o.0))
+        } else if cfg!(target_feature = "simd128") {
+            Lanes(o.0.fast_max(self.0))
+        } else {
+            o.less(self, self, o)
+        }
     }
 
     /// In each lane `x` where `self` is less than `o`, else `y`.
@@ -151,6 +164,33 @@ pub fn places_within(n: usize, limit: f32, value: impl Fn(usize) -> Lanes, out: 
         while within != 0 {
             out.push(start as u32 + within.trailing_zeros());
             within &= within - 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minima_and_maxima_are_what_comparisons_say_bit_by_bit() {
+        let values = [
+            0.0,
+            -0.0,
+            1.0,
+            -2.5,
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            1e-40,
+        ];
+        for a in values {
+            let bits = |x: Lanes| x.to_array().map(f32::to_bits);
+            let (a, b) = (Lanes::splat(a), Lanes::from_fn(|i| values[i]));
+            assert_eq!(bits(a.min(b)), bits(a.less(b, a, b)));
+            assert_eq!(bits(b.min(a)), bits(b.less(a, b, a)));
+            assert_eq!(bits(a.max(b)), bits(b.less(a, a, b)));
+            assert_eq!(bits(b.max(a)), bits(a.less(b, b, a)));
         }
     }
 }

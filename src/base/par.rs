@@ -150,14 +150,6 @@ pub fn flat_map_progress<S, T: Send>(
     Ok(out)
 }
 
-/// Sorts values of which no two are equal.
-pub fn sort<T: Ord + Send>(values: &mut [T]) {
-    #[cfg(feature = "threads")]
-    rayon::slice::ParallelSliceMut::par_sort_unstable(values);
-    #[cfg(not(feature = "threads"))]
-    values.sort_unstable();
-}
-
 /// How many threads [`map`] uses.
 pub fn threads() -> usize {
     #[cfg(feature = "threads")]

@@ -1,4 +1,5 @@
-//! Progress out, cancellation in.
+//! How a job tells the caller its progress, and how the caller stops it: [`Progress`] is asked at every step, and ends the job
+//! by [`Error::Cancelled`].
 
 use crate::base::error::{Error, Result};
 use serde::Serialize;

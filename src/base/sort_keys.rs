@@ -40,9 +40,54 @@ pub(crate) fn sort_by_key<T: Copy>(values: &mut [T], key: impl Fn(&T) -> u32) {
     }
 }
 
+/// Sorts by keys of 63 bits; equals stay in order. A radix sort, lowest digits first: as many passes over the values as keys have
+/// digits, without those in which all are equal.
+pub(crate) fn sort_pairs(pairs: &mut Vec<(u64, u32)>) {
+    // Few values do not pay for many counters.
+    let bits = if pairs.len() < 4096 { 8 } else { 11 };
+    let mut counters = vec![0u32; 1 << bits];
+    let mut sorted = vec![(0, 0); pairs.len()];
+    for shift in (0..63).step_by(bits) {
+        let digit = |&(key, _): &(u64, u32)| (key >> shift) as usize & ((1 << bits) - 1);
+        counters.fill(0);
+        for pair in &*pairs {
+            counters[digit(pair)] += 1;
+        }
+        if counters.contains(&(pairs.len() as u32)) {
+            continue;
+        }
+        let mut before = 0;
+        for counter in &mut counters {
+            before += std::mem::replace(counter, before);
+        }
+        for pair in &*pairs {
+            let place = &mut counters[digit(pair)];
+            sorted[*place as usize] = *pair;
+            *place += 1;
+        }
+        std::mem::swap(pairs, &mut sorted);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::rng::Rng;
+
+    #[test]
+    fn pairs_are_sorted_as_the_standard_library_sorts_them() {
+        let mut rng = Rng::new(1);
+        for n in [0, 1, 2, 100, 4095, 4096, 20_000] {
+            for shift in [1, 30, 62] {
+                let mut pairs: Vec<(u64, u32)> =
+                    (0..n).map(|i| (rng.next_u64() >> shift, i)).collect();
+                let mut expected = pairs.clone();
+                expected.sort();
+                sort_pairs(&mut pairs);
+                assert!(pairs == expected, "{n} keys of {} bits", 64 - shift);
+            }
+        }
+    }
 
     #[test]
     fn keys_are_ordered_as_what_they_stand_for() {

@@ -102,6 +102,22 @@ impl Octree {
         }
     }
 
+    /// Whether a point is nearer than `distance`. To find one is less than to find the nearest.
+    pub fn has_nearer(&self, q: Vec3, distance: f32) -> bool {
+        self.has_nearer_below(0, q, distance * distance)
+    }
+
+    fn has_nearer_below(&self, id: usize, q: Vec3, bound: f32) -> bool {
+        let node = &self.nodes[id];
+        if node.is_leaf() {
+            let mut points = self.points[node.range()].iter();
+            return points.any(|p| p.distance_squared(q) < bound);
+        }
+        let near = self.nearer(node, q, bound);
+        let mut children = near.children().iter();
+        children.any(|&(_, child)| self.has_nearer_below(child, q, bound))
+    }
+
     fn nearest_of(&self, leaf: &Node, q: Vec3, best: &mut Neighbor) {
         for i in leaf.range() {
             let distance2 = self.points[i].distance_squared(q);
@@ -254,6 +270,9 @@ mod tests {
                 for guess in [all[0], all[n / 2], all[n - 1]] {
                     assert_eq!(tree.nearer_than(guess, q).distance2, all[0].distance2);
                 }
+                let distance = all[0].distance2.sqrt();
+                assert!(tree.has_nearer(q, 1.001 * distance + 1e-6));
+                assert!(!tree.has_nearer(q, 0.999 * distance));
                 let mut seen = Vec::new();
                 let within = |p: Vec3| p.distance_squared(q) <= 0.2 * 0.2;
                 tree.visit(

@@ -1,7 +1,7 @@
 //! The noise of a scan, and the supports that follow from it.
 //!
-//! A quadric is fitted around some of the points; what they stand off it is noise, as a quadric follows whatever bends
-//! slowly.
+//! Quadrics are fitted to the neighbours of a sample of the points. A quadric follows every surface that bends slowly, so the
+//! points' distances from it are noise.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What is known of every point.
+//! [`Features`]: the per-point estimates, one array each.
 
 use crate::cloud::octree::Octree;
 use crate::features::noise::quantile;

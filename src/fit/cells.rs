@@ -13,6 +13,7 @@ use crate::base::progress::{Progress, Stage};
 use crate::base::sort_keys::{key, pack, unpack};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
+use crate::features::opposite::across;
 use glam::Vec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -32,8 +33,12 @@ pub struct Sites {
     pub noise: f32,
     /// Whether the normals' signs are the caller's and to be kept.
     pub oriented: bool,
+    /// From each site straight across to the opposite sheet, where one is within its reach; else zero.
+    pub across: Vec<Vec3>,
 }
 
+/// Reach of a site in spacings: the ball holds about 16 sites of the sheet, so that no gap of the sampling is left out.
+pub(crate) const REACH: f32 = 2.2;
 /// A site's spacing is at most this times the median of its neighbours': a straggler far from the surface has neighbours
 /// on it, and must not reach as far as it is lonely.
 const MOST_SPACING: f32 = 1.5;
@@ -67,11 +72,43 @@ impl Sites {
             graph,
             noise,
             oriented,
+            across: Vec::new(),
         };
         if !oriented {
             sites.mend_normals();
         }
+        sites.across = par::map(sites.spacing.len(), Vec::new, |i, steps| {
+            let within = (REACH * sites.spacing[i], noise);
+            across(&sites.tree, &sites.normals, i, within, steps)
+        });
+        sites.spacing = par::map(sites.spacing.len(), || (), |i, ()| sites.of_one_sheet(i));
         Ok(sites)
+    }
+
+    /// The spacing of a site; beside an opposite sheet that of its own alone, which looks nearly twice as dense with the other.
+    fn of_one_sheet(&self, i: usize) -> f32 {
+        let (p, across, spacing) = (self.tree.points[i], self.across[i], self.spacing[i]);
+        if across == Vec3::ZERO {
+            return spacing;
+        }
+        let (radius, half2) = (REACH * spacing, across.length_squared() / 2.0);
+        let mut own = 0.0;
+        self.tree.visit(
+            |_, node| node.distance2(p) < radius * radius,
+            |j| {
+                let d = self.tree.points[j] - p;
+                let is_own = d.length_squared() < radius * radius && d.dot(across).abs() < half2;
+                own += f32::from(u8::from(is_own));
+            },
+        );
+        let alone = radius * (std::f32::consts::PI / own).sqrt();
+        alone.clamp(spacing, MOST_SPACING * spacing)
+    }
+
+    /// Distances to the opposite sheet, where one is near.
+    pub(crate) fn thickness(&self) -> impl Iterator<Item = f32> {
+        let across = self.across.iter().map(|d| d.length());
+        across.filter(|&t| t > 0.0)
     }
 
     /// Gives a site whose normal agrees with no neighbour's the one of theirs that agrees with the most: where two sheets

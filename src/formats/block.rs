@@ -1,4 +1,4 @@
-//! Points of a file in arrays, on their way to the caller.
+//! [`Block`]: points of a file as arrays, as the caller takes them slice by slice.
 
 use super::raw_cloud::Positions;
 use super::sentinels::{LeftOut, Why};

@@ -1,4 +1,4 @@
-//! What format a file is of.
+//! Detects the format of a file: by its first bytes, else by its name.
 
 use super::format::Format;
 #[cfg(feature = "files")]

@@ -1,8 +1,7 @@
 //! LAS 1.0 to 1.4 and LAZ (ASPRS; LASzip by Martin Isenburg), by the crates `las` and `laz`. Coordinates are the file's, scale
 //! and offset applied in double precision. Attributes are `intensity` and `classification`, the other fields where one is not 0, and
 //! the extra bytes that the file describes, scaled. Colours of 16 bits become 8, and those that are all 0 are none. Times
-//! are counted from the first point's, because single precision does not hold them; those of LAZ in layers (point
-//! formats 6 to 10) are left out. A header that says 0 points, as loggers leave it that never finish, is not believed where
+//! are counted from the first point's, because single precision does not hold them. A header that says 0 points, as loggers leave it that never finish, is not believed where
 //! points follow.
 //!
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
@@ -11,6 +10,7 @@
 mod crs;
 mod fields;
 mod header;
+mod layered;
 mod laz;
 mod time;
 
@@ -58,7 +58,7 @@ impl Parser for Las {
             table
         });
         if self.row == header.points {
-            return Ok(Step::Done);
+            return Ok(self.after_points(input));
         }
         if header.packed {
             if !input.last {
@@ -74,7 +74,7 @@ impl Parser for Las {
                 header.push(record, start, row, table);
             })?;
             return Ok(if self.row == header.points {
-                Step::Done
+                self.after_points(input)
             } else {
                 Step::More
             });
@@ -92,7 +92,7 @@ impl Parser for Las {
             header.push(record, &mut self.start, &mut self.values, table);
             self.row += 1;
         }
-        Ok(Step::Done)
+        Ok(self.after_points(input))
     }
 
     fn crs(&self) -> Option<Crs> {
@@ -105,5 +105,26 @@ impl Parser for Las {
             .map(|start| format!("The attribute gps_time counts the seconds from {start}."))
             .into_iter()
             .collect()
+    }
+}
+
+/// Bytes behind the points among which a reference system is looked for: wave forms may be there, too.
+const MOST_BEHIND: u64 = 1 << 24;
+
+impl Las {
+    /// Where nothing before the points says the reference system, a long record behind them may.
+    fn after_points(&mut self, input: &mut Input) -> Step {
+        let records = self.header.as_ref().and_then(|header| header.long_records);
+        let Some((start, count)) = records.filter(|(start, _)| {
+            self.crs.is_none() && *start >= input.place.byte && input.size - start <= MOST_BEHIND
+        }) else {
+            return Step::Done;
+        };
+        if !input.last {
+            return Step::More;
+        }
+        input.skip(start - input.place.byte);
+        self.crs = crs::read_long(count, input.rest());
+        Step::Done
     }
 }

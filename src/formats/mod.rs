@@ -1,10 +1,19 @@
-//! Files: bytes to arrays, one file a format, and back, in `write`; what readers share is here, in `input`, `text` and `table`.
+//! Files: bytes to a [`RawCloud`], and results back to bytes. The paper starts from points in memory and has no such section.
 //!
-//! Bytes come from strangers. A reader returns a right result or a typed error that names the line or byte, never
-//! panics, and never reserves memory on the word of a header: only what the bytes that are really there can fill.
+//! 1. [`detect()`] tells the [`Format`] by the first bytes, then by the name.
+//! 2. A `parser`, one file a format, takes the bytes slice by slice and gives a [`Block`] of points when it has one. What parsers
+//!    share is in `input` (bytes with their place), `text`, `table` (columns of numbers) and `colors`.
+//! 3. Points that measure nothing are left out (`sentinels`); faces become points that lie evenly on them (`faces`, with the
+//!    colours of their `pictures`); where the points were seen from goes along (`stations`).
+//! 4. [`Reading`] drives these, and says what it met in a [`Summary`]. [`read`] is that for a file that is wholly in memory.
+//! 5. `write` makes a file of a cloud or a mesh: [`write()`].
 //!
-//! [`read`] takes a file that is wholly in memory; [`Reading`] takes it in slices and gives the points in blocks, so that
-//! neither the file nor its points are in memory at once where the format allows that.
+//! **In**: bytes, from strangers. A reader returns a right result or a typed error that names the line or byte, never panics, and
+//! never reserves memory on the word of a header: only what the bytes that are really there can fill. **Out**: positions in the
+//! file's frame and unit, `f32` or `f64` as the file has them; colours from 0 to 255; normals of any length; up, unit and
+//! reference system where the format or the file says them.
+//!
+//! **Cost**: linear in the bytes. Where the format allows it, neither the file nor its points are in memory at once.
 
 // A build with one feature's readers leaves parts unused of what they share.
 #![cfg_attr(
@@ -31,6 +40,8 @@ mod format;
 mod input;
 #[cfg(feature = "las")]
 mod las;
+#[cfg(any(feature = "las", feature = "exports"))]
+mod las_names;
 #[cfg(feature = "files")]
 mod lzf;
 #[cfg(feature = "files")]

@@ -146,7 +146,12 @@ impl Off {
                 .collect();
             match counts[..] {
                 [Some(vertices), Some(faces)] | [Some(vertices), Some(faces), _] => {
-                    self.counts = Some([vertices, faces])
+                    self.counts = Some([vertices, faces]);
+                    // Then the next lines are faces.
+                    if vertices == 0 {
+                        let table = table.insert(Table::new(Columns::xyz(), Some(0)));
+                        table.gone = self.faces.is_some().then(Vec::new);
+                    }
                 }
                 _ => return Err(input.bad_line("the counts of vertices, faces and edges", line)),
             }

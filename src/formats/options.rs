@@ -1,4 +1,4 @@
-//! What a caller can say of a file that does not say it itself.
+//! Options of a reader: what the file does not say itself, such as the columns of a table.
 
 use super::faces::FaceMode;
 use crate::base::error::{Error, Result};

@@ -1,4 +1,4 @@
-//! What reads a format: a parser.
+//! [`Parser`], the trait that every format's reader has.
 
 use super::faces::triangles::Faces;
 use super::input::Input;

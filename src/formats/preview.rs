@@ -1,4 +1,4 @@
-//! What a person needs to say what the columns of a table are.
+//! The first rows of a table, from which a person tells what its columns are.
 
 /// The first rows of a table as a person reads them, and how they were taken apart.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,9 @@
-//! What a file holds, before it is a cloud, and what is written.
+//! [`RawCloud`]: the arrays of a file, in the file's frame. Readers make it, writers take it.
 
 use super::faces::sampling::Sampling;
 use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
+#[cfg(feature = "stages")]
 use crate::pipeline::Surface;
 
 /// Coordinates `x y z x y z …`: single precision where that loses nothing that matters, else double.
@@ -120,6 +121,7 @@ impl RawCloud {
     }
 
     /// The vertices of a mesh, in double precision; its triangles are [`Surface::indices`].
+    #[cfg(feature = "stages")]
     pub fn of_surface(surface: &Surface) -> RawCloud {
         let cloud = &surface.cloud.reduced.cloud;
         RawCloud {

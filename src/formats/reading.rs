@@ -114,7 +114,7 @@ impl Reading {
     /// The next bytes.
     ///
     /// # Errors
-    /// Those of [`super::read`] and of [`super::detect`].
+    /// Those of [`super::read`] and of [`super::detect()`].
     pub fn push(&mut self, bytes: &[u8]) -> Result<()> {
         if self.done {
             return Ok(());
@@ -162,6 +162,11 @@ impl Reading {
         if let Some(faces) = self.faces.as_mut().filter(|_| HAVE_FACES) {
             faces.give_picture(picture);
         }
+    }
+
+    /// The first rows of a table of text, once they are there; after an error, too.
+    pub fn preview(&self) -> Option<Preview> {
+        self.parser.as_ref().and_then(|parser| parser.preview())
     }
 
     /// Puts points of the faces in the place of the vertices.
@@ -224,7 +229,7 @@ impl Reading {
             }),
             columns: parser.map_or(Vec::new(), |parser| parser.columns()),
             notes: parser.map_or(Vec::new(), |parser| parser.notes()),
-            preview: parser.and_then(|parser| parser.preview()),
+            preview: self.preview(),
             sampling: self.sampled.clone(),
             stations: table.map_or_else(Stations::default, |table| table.stations.clone()),
             up: self.up(format),

@@ -171,6 +171,10 @@ impl Table {
         let mut table = Table::new(columns, Some(rows));
         table.rows = rows;
         table.normals_used = true;
+        for row in 0..cloud.points() {
+            let position = [0, 1, 2].map(|axis| cloud.positions.get(3 * row + axis));
+            table.sentinels.add(position);
+        }
         table.block = Block {
             positions: cloud.positions,
             normals: cloud.normals,

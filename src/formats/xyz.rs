@@ -59,6 +59,8 @@ pub(super) struct Xyz {
     ahead: Vec<Numbered>,
     ahead_bytes: usize,
     plan: Option<Plan>,
+    /// Of a table that is refused, too: a person may say what its columns are.
+    preview: Option<Preview>,
     /// Sum of the counts in the file.
     promised: Option<u64>,
     rows: u64,
@@ -115,7 +117,7 @@ impl Parser for Xyz {
     }
 
     fn preview(&self) -> Option<Preview> {
-        self.plan.as_ref().map(|plan| plan.preview.clone())
+        self.preview.clone()
     }
 }
 
@@ -155,7 +157,18 @@ impl Xyz {
     /// Decides how rows are read, and reads the first.
     fn start(&mut self, input: &Input, table: &mut Option<Table>) -> Result<()> {
         let ahead = std::mem::take(&mut self.ahead);
-        let plan = match Plan::of(&ahead, &self.options) {
+        let plan = Plan::of(&ahead, &self.options);
+        self.preview = match &plan {
+            Ok(plan) => Some(plan.preview.clone()),
+            Err(_) => {
+                let any = ReadOptions {
+                    columns: Some(Vec::new()),
+                    ..self.options.clone()
+                };
+                Plan::of(&ahead, &any).ok().map(|plan| plan.preview)
+            }
+        };
+        let plan = match plan {
             Ok(plan) => plan,
             Err(NoPlan::Line {
                 number,

@@ -88,7 +88,7 @@ pub(crate) enum Precision {
 }
 
 /// Three numbers.
-fn triple(values: Array) -> [f64; 3] {
+pub(crate) fn triple(values: Array) -> [f64; 3] {
     [0, 1, 2].map(|axis| values.get(axis).as_f64().unwrap_or(0.0))
 }
 

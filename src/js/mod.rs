@@ -1,4 +1,14 @@
-//! What every border to JavaScript needs: panics kept, errors thrown, objects made.
+//! The border to JavaScript: arguments checked and taken, a call of the crate, results handed over. No algorithm is here.
+//!
+//! 1. `wasm`: the engine's calls: reduce, reconstruct, inspect. `wasm_read`: readers, slice by slice. `wasm_write`: writers.
+//!    `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
+//! 2. `values`: options of a call. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
+//! 3. This file is what all of them need: panics kept, errors thrown as objects, objects made.
+//!
+//! **In**: typed arrays, copied once into wasm's memory; options as plain objects whose ranges the crate checks. **Out**: objects of
+//! typed arrays that JavaScript owns, and reports in camel case. An error carries its code, its place, what was expected and found.
+//!
+//! **Cost**: one copy of each array in each direction.
 
 #[cfg(any(feature = "engine", feature = "exports"))]
 pub mod clouds;
@@ -6,6 +16,8 @@ pub mod clouds;
 mod crs;
 #[cfg(any(feature = "engine", feature = "exports"))]
 mod viewpoints;
+#[cfg(feature = "engine")]
+mod values;
 #[cfg(feature = "engine")]
 pub mod wasm;
 #[cfg(feature = "pictures")]
@@ -20,7 +32,9 @@ pub mod wasm_pictures;
     )
 ))]
 pub mod wasm_read;
-#[cfg(any(feature = "engine", feature = "exports"))]
+#[cfg(feature = "samples")]
+pub mod wasm_samples;
+#[cfg(feature = "exports")]
 pub mod wasm_write;
 
 use crate::base::error::Error;
@@ -80,25 +94,24 @@ pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     Ok(object.into())
 }
 
-#[cfg(not(feature = "pictures"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "e57",
+    feature = "files",
+    feature = "las",
+    feature = "packed"
+))]
 pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
     value
         .as_ref()
         .map_or(JsValue::UNDEFINED, |value| array(value).into())
 }
 
-#[cfg(any(feature = "engine", feature = "exports"))]
-pub(crate) fn bad_option(option: &str, expected: &str, found: impl ToString) -> Error {
+#[cfg(any(feature = "exports", feature = "samples"))]
+pub(crate) fn bad_option(option: &str, expected: &str, found: &str) -> Error {
     Error::BadOption {
         option: option.into(),
         expected: expected.into(),
-        found: found.to_string(),
+        found: found.into(),
     }
-}
-
-/// Options over their defaults; ranges are checked by the pipeline.
-#[cfg(any(feature = "engine", feature = "exports"))]
-pub(crate) fn from_js<T: serde::de::DeserializeOwned>(options: JsValue) -> Result<T, Error> {
-    serde_wasm_bindgen::from_value(options)
-        .map_err(|error| bad_option("options", "the options of the reference", error))
 }

@@ -1,5 +1,5 @@
-//! The pipeline from JavaScript; what reads files is `wasm_read`, what both need `js`. Typed arrays and one options object in,
-//! plain objects of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
+//! The pipeline from JavaScript; files and samples are `wasm_read`, `wasm_write` and `wasm_samples`, what all need `js`. Typed arrays
+//! and one options object in, plain objects of typed arrays and a report out. Errors are thrown as plain objects `{ code, message, index, expected, found }`;
 //! `pkg/` turns them into its `PointweaveError`.
 //!
 //! Every `progress` is a function `(stage, fraction) => stop` whose truthy answer, or exception, stops the job.
@@ -11,16 +11,16 @@ use crate::cloud::{Attribute, Cloud};
 use crate::formats::Positions;
 use crate::js::clouds::{PointCloud, Precision};
 use crate::js::crs::crs_to_js;
+use crate::js::values::JsOption;
 use crate::js::viewpoints::views_to_js;
-use crate::js::{JsResult, bad_option, from_js, object, optional};
+use crate::js::{JsResult, object, optional};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
 use crate::report::ReduceReport;
-use crate::samples::{self, Model};
 use glam::Vec3;
 use js_sys::{
     Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
 };
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
 
@@ -38,20 +38,12 @@ pub fn lend_thread() {
     crate::base::pool::lend_thread();
 }
 
-/// `{ reduce, reconstruct }`: the defaults, which `pkg/engine/options-table.js` has from the same table.
-#[wasm_bindgen]
-pub fn defaults() -> JsResult {
-    object([
-        ("reduce", to_js(&ReduceParams::default())?),
-        ("reconstruct", to_js(&SurfaceParams::default())?),
-    ])
-}
-
 /// [`pipeline::reduce_owned`].
 #[wasm_bindgen]
 pub fn reduce(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
+    let params = ReduceParams::given(&JsOption(options))?;
     let (input, precision) = cloud.to_cloud()?;
-    let mut result = pipeline::reduce_owned(input, &from_js(options)?, &mut JsProgress(progress))?;
+    let mut result = pipeline::reduce_owned(input, &params, &mut JsProgress(progress))?;
     sign(&mut result.report);
     reduced_to_js(&result, precision)
 }
@@ -62,7 +54,7 @@ static MEMORY: Mutex<Option<pipeline::Memory>> = Mutex::new(None);
 /// [`pipeline::reconstruct_owned`], or where `keep` is true [`pipeline::reconstruct_again`].
 #[wasm_bindgen]
 pub fn reconstruct(cloud: &PointCloud, options: JsValue, progress: Function) -> JsResult {
-    let params: SurfaceParams = from_js(options)?;
+    let params = SurfaceParams::given(&JsOption(options))?;
     let mut progress = JsProgress(progress);
     let mut memory = MEMORY
         .lock()
@@ -90,35 +82,6 @@ pub fn inspect(cloud: &PointCloud, progress: Function) -> JsResult {
         Positions::F64(values) => values,
     };
     to_js(&pipeline::inspect(&positions, &mut JsProgress(progress))?)
-}
-
-/// Options of [`sample`].
-#[derive(Deserialize)]
-struct SampleOptions {
-    model: String,
-    count: Option<usize>,
-    #[serde(default)]
-    seed: u64,
-    noise: Option<f64>,
-}
-
-/// [`samples::sample_with_noise`] of `{ model, count, seed, noise }`: a cloud with colours.
-#[wasm_bindgen]
-pub fn sample(options: JsValue) -> JsResult {
-    let SampleOptions {
-        model,
-        count,
-        seed,
-        noise,
-    } = from_js(options)?;
-    let model =
-        Model::from_name(&model).ok_or_else(|| bad_option("model", "duck, pig or part", &model))?;
-    let count = count.unwrap_or(model.default_points());
-    let scan = samples::sample_with_noise(model, count, seed, noise.unwrap_or(samples::NOISE));
-    object([
-        ("positions", Float32Array::from(&scan.positions[..]).into()),
-        ("colors", Uint8Array::from(&scan.colors[..]).into()),
-    ])
 }
 
 /// A `ReducedCloud` with positions of the input's type.

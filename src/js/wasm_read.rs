@@ -19,6 +19,12 @@ thread_local! {
     static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
 }
 
+#[cfg(feature = "packed")]
+thread_local! {
+    /// The archive that is being unpacked.
+    static ARCHIVE: RefCell<Option<Archive<'static>>> = const { RefCell::new(None) };
+}
+
 /// Begins a file of `{ name, format, size, columns, delimiter, decimal, skip, sentinels, faces }`, all but the size optional; one that
 /// was being read is given up.
 #[wasm_bindgen(js_name = readStart)]
@@ -59,26 +65,27 @@ fn read_options(options: &JsValue) -> Result<ReadOptions, JsValue> {
     })
 }
 
-/// What is in a ZIP or gzip archive: `[{ name, content }]`, of the parts that `wanted` names by number, or of all without
-/// content.
+/// Keeps a ZIP or gzip archive for [`unpack`], and says the names of what is in it.
+#[cfg(feature = "packed")]
+#[wasm_bindgen(js_name = openArchive)]
+pub fn open_archive(bytes: Vec<u8>, name: &str) -> JsResult {
+    let archive = Archive::open(bytes, Some(name))?;
+    let names = archive.entries.iter().map(|entry| entry.name.clone());
+    let names: Vec<String> = names.collect();
+    ARCHIVE.set(Some(archive));
+    Ok(strings(&names))
+}
+
+/// The content of a part of the archive, by its number.
 #[cfg(feature = "packed")]
 #[wasm_bindgen(js_name = unpack)]
-pub fn unpack(bytes: &[u8], name: &str, wanted: Option<u32>) -> JsResult {
-    let archive = Archive::open(bytes, Some(name))?;
-    let entries = Array::new();
-    for (i, entry) in archive.entries.iter().enumerate() {
-        let content = match wanted {
-            Some(wanted) if wanted as usize == i => {
-                Uint8Array::from(&archive.unpack(entry)?[..]).into()
-            }
-            _ => JsValue::UNDEFINED,
-        };
-        entries.push(&object([
-            ("name", (&entry.name).into()),
-            ("content", content),
-        ])?);
-    }
-    Ok(entries.into())
+pub fn unpack(part: usize) -> Result<Uint8Array, JsValue> {
+    ARCHIVE.with_borrow(|archive| {
+        let archive = archive.as_ref();
+        let of = archive.and_then(|archive| Some((archive, archive.entries.get(part)?)));
+        let (archive, entry) = of.ok_or_else(|| Error::Internal("no such part".into()))?;
+        Ok(Uint8Array::from(&archive.unpack(entry)?[..]))
+    })
 }
 
 /// The next bytes.
@@ -136,14 +143,23 @@ pub fn read_picture(pixels: Option<Vec<u8>>, width: usize, height: usize) -> JsR
     })
 }
 
-/// Does something with the file that is being read; an error ends it.
+/// Does something with the file that is being read; an error ends it. That of a table of text has the `table` that could not be read.
 fn with(work: impl FnOnce(&mut Reading) -> JsResult) -> JsResult {
     let mut reading = READING
         .take()
         .ok_or_else(|| Error::Internal("no file is being read".into()))?;
-    let answer = work(&mut reading)?;
-    READING.set(Some(reading));
-    Ok(answer)
+    match work(&mut reading) {
+        Ok(answer) => {
+            READING.set(Some(reading));
+            Ok(answer)
+        }
+        Err(error) => {
+            if let Some(preview) = reading.preview() {
+                Reflect::set(&error, &"table".into(), &table(&preview)?)?;
+            }
+            Err(error)
+        }
+    }
 }
 
 fn named(name: &str) -> Result<Format, Error> {

@@ -1,34 +1,32 @@
-//! Results to files, from JavaScript: in the engine's builds, and in the one of the writers that are not in the engine.
+//! Results to files, from JavaScript.
 
 use crate::cloud::Unit;
 use crate::formats::{self, Output, WriteOptions};
-use crate::js::clouds::PointCloud;
-use crate::js::{bad_option, from_js};
-use js_sys::Uint8Array;
-use serde::Deserialize;
+use crate::js::bad_option;
+use crate::js::clouds::{PointCloud, triple};
+use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-/// Options of [`write`].
-#[derive(Deserialize)]
-struct WriteSettings {
-    format: Option<String>,
-    encoding: Option<String>,
-    #[serde(default)]
-    quantize: bool,
-    up: Option<[f64; 3]>,
-    unit: Option<String>,
+#[wasm_bindgen]
+extern "C" {
+    /// `{ format, encoding, quantize, up, unit }`; `pkg/engine/options.js` has checked their types.
+    pub type WriteSettings;
+    #[wasm_bindgen(method, getter)]
+    fn format(this: &WriteSettings) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn encoding(this: &WriteSettings) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn quantize(this: &WriteSettings) -> Option<bool>;
+    #[wasm_bindgen(method, getter)]
+    fn up(this: &WriteSettings) -> Option<Array>;
+    #[wasm_bindgen(method, getter)]
+    fn unit(this: &WriteSettings) -> Option<String>;
 }
 
 /// [`formats::write`] of `{ format, encoding, quantize, up, unit }`: the file's bytes.
 #[wasm_bindgen]
-pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValue> {
-    let WriteSettings {
-        format,
-        encoding,
-        quantize,
-        up,
-        unit,
-    } = from_js(options)?;
+pub fn write(result: &PointCloud, options: &WriteSettings) -> Result<Uint8Array, JsValue> {
+    let format = options.format();
     let name = format.as_deref().unwrap_or("ply");
     let format = Output::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = Output::ALL.iter().map(|format| format.name()).collect();
@@ -39,10 +37,10 @@ pub fn write(result: &PointCloud, options: JsValue) -> Result<Uint8Array, JsValu
             .ok_or_else(|| bad_option("unit", "mm, cm, m, in, ft, us-ft or deg", name))
     };
     let options = WriteOptions {
-        ascii: encoding.as_deref() == Some("ascii"),
-        quantize,
-        up,
-        unit: unit.as_deref().map(named).transpose()?,
+        ascii: options.encoding().as_deref() == Some("ascii"),
+        quantize: options.quantize().unwrap_or_default(),
+        up: options.up().map(triple),
+        unit: options.unit().as_deref().map(named).transpose()?,
     };
     let indices = result.indices().map(|indices| indices.to_vec());
     let bytes = formats::write(&result.read()?, indices.as_deref(), format, options)?;

@@ -23,7 +23,7 @@ const MOST: f64 = 10.0;
 /// A closed loop of boundary edges: its vertices in the order in which the triangles beside it run through them.
 pub(crate) type Rim = Vec<u32>;
 
-/// The rims of a manifold mesh, by their least vertex.
+/// The rims of a manifold mesh, by their least vertex; fewer than three vertices are none.
 pub(crate) fn rims(mesh: &Mesh) -> Vec<Rim> {
     let mut next: Vec<u32> = vec![u32::MAX; mesh.vertices.len()];
     let mut edges: Vec<u64> = edges(mesh).collect();
@@ -40,7 +40,7 @@ pub(crate) fn rims(mesh: &Mesh) -> Vec<Rim> {
             rim.push(v);
             v = std::mem::replace(&mut next[v as usize], u32::MAX);
         }
-        if !rim.is_empty() {
+        if rim.len() >= 3 {
             rims.push(rim);
         }
     }

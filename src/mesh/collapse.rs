@@ -227,7 +227,7 @@ impl Star {
     }
 }
 
-/// `κ L²` of an edge `along` which the normals turn by `turn`, see [`crate::mesh::simplify`].
+/// `κ L²` of an edge `along` which the normals turn by `turn`, see [`mod@crate::mesh::simplify`].
 fn bend(along: DVec3, turn: DVec3, rules: &Rules) -> f64 {
     along.dot(turn).abs() + rules.bend * along.length_squared()
 }

@@ -3,7 +3,8 @@
 //!
 //! F(x) = Σ W_i(x) s_i f_i(x) / Σ W_i(x), with W_i(x) = Σ ψ(|x − p| / R_p) over the core sites p of sub-domain i, ψ
 //! Wendland's C² function and R_p the reach of the site. Weights that hang on sites rather than on boxes fall with the
-//! distance to the sheet, so that a thin wall's two sides hardly mix.
+//! distance to the sheet, so that a thin wall's two sides hardly mix. Towards an opposite sheet that is within its reach a site
+//! reaches no farther than that.
 //!
 //! Beyond all reaches F has no value. There the winding number of the oriented sites ([`crate::orient::winding`]) tells inside
 //! from outside and closes holes.
@@ -14,7 +15,7 @@ use crate::cloud::neighborhood::Block;
 use crate::cloud::octree::Octree;
 use crate::features::noise::quantile;
 use crate::fit::Fits;
-use crate::fit::cells::Sites;
+use crate::fit::cells::{REACH, Sites};
 use crate::fit::local::LocalFit;
 use crate::mesh::surface::Implicit;
 use crate::orient::Signs;
@@ -30,6 +31,9 @@ pub struct Field<'a> {
     tree: &'a Octree,
     /// R_p of every site, unit frame; 0 where the site is part of no surface.
     pub reach: Vec<f32>,
+    /// Towards the opposite sheet, where it is near, and how much farther than it is a position on that side counts: the unit
+    /// direction times √((R/L)² − 1) of its reach R and that to the opposite sheet, L. Else zero.
+    squeeze: Vec<Vec3>,
     /// Sub-domain of every site.
     owner: Vec<u32>,
     /// Largest reach in each node of the tree.
@@ -37,14 +41,17 @@ pub struct Field<'a> {
     winding: Winding<'a>,
     /// Value that stands for one whole turn of the winding number.
     depth: f64,
+    /// See [`Implicit::sensor`]; empty where no sensor is known.
+    sensor: &'a [Vec3],
     /// Whether the sites enclose something, so that the winding number tells inside from outside everywhere.
     solid: bool,
     /// Of the sites.
     noise: f64,
 }
 
-/// Reach in spacings: the ball holds about 16 sites of the sheet, so that no gap of the sampling is left out.
-const REACH: f32 = 2.2;
+/// Share of the distance to the opposite sheet that a site reaches towards it: both sheets together leave no gap between them,
+/// and neither says anything of the other.
+const TOWARDS: f32 = 0.95;
 /// Σ W_i below which functions are asked beyond their sites, more than about 1.3 spacings away from all: what they say of
 /// inside and outside must not contradict the winding number. At 0.5 to 1.5 lobes that grow out of sparse and noisy parts
 /// are gone (rms errors of four models that the bench does not use: 18 % less); farther in creases suffer.
@@ -70,7 +77,12 @@ struct Part<const N: usize> {
 
 impl<'a> Field<'a> {
     /// Joins the functions. Cost: n log n.
-    pub fn new(fits: &'a Fits, signs: &'a Signs, sites: &'a Sites) -> Field<'a> {
+    pub fn new(
+        fits: &'a Fits,
+        signs: &'a Signs,
+        sites: &'a Sites,
+        sensor: &'a [Vec3],
+    ) -> Field<'a> {
         let tree = &sites.tree;
         let mut owner = vec![u32::MAX; tree.points.len()];
         for (s, subdomain) in fits.subdomains.iter().enumerate() {
@@ -90,6 +102,16 @@ impl<'a> Field<'a> {
                 }
             })
             .collect();
+        let squeeze = sites.across.iter().zip(&reach);
+        let squeeze = squeeze
+            .map(|(&across, &reach)| {
+                let ratio = reach / (TOWARDS * across.length());
+                if across == Vec3::ZERO || ratio <= 1.0 {
+                    return Vec3::ZERO;
+                }
+                across.normalize() * (ratio * ratio - 1.0).sqrt()
+            })
+            .collect();
         let node_reach = tree
             .nodes
             .iter()
@@ -101,10 +123,12 @@ impl<'a> Field<'a> {
             signs: &signs.signs,
             tree,
             reach,
+            squeeze,
             owner,
             node_reach,
             winding: Winding::new(tree, &signs.normals, &sites.spacing),
             depth,
+            sensor,
             solid: false,
             noise: sites.noise.into(),
         };
@@ -137,10 +161,18 @@ impl<'a> Field<'a> {
                     return;
                 }
                 let [dx, dy, dz] = [0, 1, 2].map(|axis| block.at[axis] - Lanes::splat(p[axis]));
-                let length = (dx * dx + dy * dy + dz * dz).sqrt();
-                let (weight, slope) = wendland(length * Lanes::splat(1.0 / r));
+                let mut square = dx * dx + dy * dy + dz * dz;
+                let mut away = [dx, dy, dz];
+                let squeeze = self.squeeze[i];
+                if squeeze != Vec3::ZERO {
+                    let [sx, sy, sz] = squeeze.to_array().map(Lanes::splat);
+                    let towards = (dx * sx + dy * sy + dz * sz).max(Lanes::ZERO);
+                    square += towards * towards;
+                    away = [dx + towards * sx, dy + towards * sy, dz + towards * sz];
+                }
+                let (weight, slope) = wendland(square.sqrt() * Lanes::splat(1.0 / r));
                 let slope = slope * Lanes::splat(1.0 / (r * r));
-                let terms = [weight, slope * dx, slope * dy, slope * dz];
+                let terms = [weight, slope * away[0], slope * away[1], slope * away[2]];
                 let weight = std::array::from_fn(|k| terms[k]);
                 let subdomain = self.owner[i];
                 // In this order their sums do not depend on which positions share a block.
@@ -256,6 +288,10 @@ impl Implicit for Field<'_> {
                 found[k] = (!value[l].is_nan()).then(|| (f64::from(value[l]), slope));
             }
         });
+    }
+
+    fn sensor(&self, point: usize) -> Vec3 {
+        self.sensor.get(point).copied().unwrap_or_default()
     }
 }
 

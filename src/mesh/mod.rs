@@ -10,6 +10,7 @@
 //! 4. `straighten`: vertices on creases are moved onto the curves that several cells tell.
 //! 5. `simplify`: fewer triangles where the surface is flat.
 //! 6. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 7. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -28,6 +29,7 @@ pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
 pub(crate) mod curves;
+pub(crate) mod crossings;
 pub(crate) mod disc;
 pub(crate) mod dual;
 pub(crate) mod few;
@@ -89,6 +91,10 @@ pub struct Extracted {
     pub open: usize,
     /// Holes that were closed and rims that were left open, the widest first.
     pub holes: Vec<Hole>,
+    /// Triangles that cross others, after what could be mended was.
+    pub crossings: usize,
+    /// Share of the points (0-1) that were nearest to pieces that were left out as too small.
+    pub dropped: f64,
 }
 
 /// The zero set of `field` near `points`, whose fitted functions reach as far as `reach` (a radius for each point).
@@ -99,7 +105,7 @@ pub struct Extracted {
 ///
 /// Where no fitted function reaches,
 /// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
-///   in a cell with an unreached corner;
+///   in a cell with an unreached corner, and near its rims none that shows the back to [`Implicit::sensor`];
 /// - `Closed`: like `Open`, and then each rim is capped by a membrane, which is flat where the rim is; nothing else moves;
 /// - `Auto`: unreached corners take [`Implicit::global`], then each cap for itself stays or goes, by how far it is from the
 ///   points and how it turns ([`holes`]). Closing stops once it takes more cells than the rest of the surface; components
@@ -134,9 +140,11 @@ pub fn extract<F: Implicit>(
         open,
         mut holes,
     } = decide_holes(&mut dual, params.boundary, (points, reach), params.max_hole);
-    trim_rims(&mut dual, points, reach);
+    trim_rims(&mut dual, (points, reach), params.resolution, |i| {
+        field.sensor(i)
+    });
     split_bow_ties(&mut dual);
-    drop_phantoms(&mut dual, points, reach);
+    let dropped = drop_phantoms(&mut dual, points, reach);
     let Triangulated {
         mut mesh,
         mut on_crease,
@@ -160,6 +168,7 @@ pub fn extract<F: Implicit>(
         closed: if closes { open } else { closed },
         open: if closes { 0 } else { open },
         holes,
+        dropped,
         ..extracted
     })
 }
@@ -179,10 +188,12 @@ impl Extracted {
         } else {
             0.0
         };
+        let crossings = crossings::mend(&mut mesh);
         Extracted {
             mesh,
             filled,
             holes,
+            crossings,
             ..Default::default()
         }
     }

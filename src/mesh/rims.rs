@@ -1,4 +1,4 @@
-//! Smooth ends of open surfaces: the lattice leaves them in steps.
+//! Smooths the rims of open surfaces, which the lattice leaves in steps.
 
 use crate::base::groups::Groups;
 use crate::base::sort_keys::{pack, unpack};

@@ -1,4 +1,4 @@
-//! What an extraction starts from, an implicit function, and what it makes, a mesh.
+//! The input and the output of an extraction: [`Implicit`], the function, and [`Mesh`].
 
 use glam::{DVec3, Vec3};
 
@@ -29,6 +29,11 @@ pub trait Implicit: Sync {
         found: &mut [Option<(f64, DVec3)>],
         scratch: &mut Self::Scratch,
     );
+
+    /// A vector that points from a fitted point to the sensor that saw it; zero where none is known.
+    fn sensor(&self, _point: usize) -> Vec3 {
+        Vec3::ZERO
+    }
 }
 
 /// A triangle mesh in the unit frame.

@@ -1,4 +1,4 @@
-//! What is kept of the dual mesh: no sheets that no point supports, one fan around each vertex.
+//! Trims the dual mesh: leaves out sheets that no point supports, and makes one fan around each vertex.
 //!
 //! Every step only leaves out quads, so edges keep at most two; [`split_bow_ties`] then sees to the vertices.
 
@@ -7,6 +7,7 @@ use crate::base::par;
 use crate::base::sets::Sets;
 use crate::base::sort_keys::{key, of_key, pack, unpack};
 use crate::cloud::octree::Octree;
+use crate::features::noise::quantile;
 use crate::mesh::dual::Dual;
 use crate::mesh::probe::{Quad, Vertex};
 use crate::orient::SMALLEST;
@@ -15,6 +16,9 @@ use glam::Vec3;
 /// An open surface ends within this share of a point's reach of it. Reaches are some 2.2 spacings, so that is 1.3, and what
 /// the rim is smoothed by stays within 1.5.
 const RIM: f32 = 0.6;
+/// A rim that shows its sensor the back is trimmed so many median reaches deep, about 4.4 spacings. Depth frames curl at
+/// outlines by less; farther in, what looks away is noise on a surface that is seen at a grazing angle.
+const BEHIND: f64 = 2.0;
 /// Points at the end of a surface have half as many neighbours as others and seem to be farther apart: the reach that
 /// counts is the median of so many.
 const AROUND: usize = 24;
@@ -41,8 +45,16 @@ pub(crate) fn components(dual: &Dual) -> (Vec<u32>, usize) {
 }
 
 /// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps
-/// of the sampling inside of the surface stay closed.
-pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+/// of the sampling inside of the surface stay closed. So are quads near the end that show the back to the `sensor` of the
+/// nearest point ([`Implicit::sensor`]): no sensor sees such, the fit curls there. `edge` is that of the lattice.
+///
+/// [`Implicit::sensor`]: crate::mesh::Implicit::sensor
+pub(crate) fn trim_rims(
+    dual: &mut Dual,
+    (points, reach): (&[Vec3], &[f32]),
+    edge: f64,
+    sensor: impl Fn(usize) -> Vec3,
+) {
     let vertices = dual.vertices.iter().enumerate();
     let mut ends: Vec<u32> = vertices
         .filter(|(_, vertex)| vertex.quads > 0 && vertex.is_at_end())
@@ -54,6 +66,14 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
     let mut left: Vec<u8> = dual.vertices.iter().map(|vertex| vertex.quads).collect();
     let tree = Octree::build(points);
     let mut found = Vec::new();
+    let shows_back = |quad: &Quad| {
+        let [a, b, c, d] = quad.vertices.map(|v| dual.vertices[v as usize].position);
+        let nearest = tree.nearest((a + b + c + d) * 0.25).index as usize;
+        (c - a)
+            .cross(d - b)
+            .dot(sensor(tree.order[nearest] as usize))
+            < 0.0
+    };
     let mut is_far = |quad: &Quad| {
         let beyond = |v: u32| {
             let p = dual.vertices[v as usize].position;
@@ -81,18 +101,25 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         quads.flat_map(|(quad, q)| quad.vertices.map(|v| (v, q)))
     });
     let mut dropped = vec![false; dual.quads.len()];
-    while let Some(end) = ends.pop() {
-        for &q in around.of(end) {
-            if !dropped[q as usize] && is_far(&dual.quads[q as usize]) {
-                dropped[q as usize] = true;
-                for v in dual.quads[q as usize].vertices {
-                    if left[v as usize] == dual.vertices[v as usize].degree {
-                        ends.push(v);
+    let behind = BEHIND * f64::from(quantile(reach.to_vec(), 2));
+    let mut depth = 0.0;
+    while !ends.is_empty() {
+        for end in std::mem::take(&mut ends) {
+            for &q in around.of(end) {
+                let quad = &dual.quads[q as usize];
+                let is_behind = || depth < behind && shows_back(quad);
+                if !dropped[q as usize] && (is_behind() || is_far(quad)) {
+                    dropped[q as usize] = true;
+                    for v in quad.vertices {
+                        if left[v as usize] == dual.vertices[v as usize].degree {
+                            ends.push(v);
+                        }
+                        left[v as usize] -= 1;
                     }
-                    left[v as usize] -= 1;
                 }
             }
         }
+        depth += edge;
     }
     let mut dropped = dropped.into_iter();
     dual.retain(|_| dropped.next() == Some(false));
@@ -100,18 +127,19 @@ pub(crate) fn trim_rims(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
 
 /// Drops components that are no part of the surface: those that are the nearest one to fewer than [`LEAST_POINTS`] points
 /// (the one with the most points stays), and second layers: pieces with an end that stand for less than [`LAYER_POINTS`] of
-/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such.
-pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
+/// the points of the largest, and run along a component that is not so. Scans that are not quite registered make such. Returns
+/// the share of the points that were nearest to what was dropped.
+pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) -> f64 {
     let (of, count) = components(dual);
     let used = || {
         let vertices = dual.vertices.iter().zip(&of);
         vertices.filter(|(vertex, _)| vertex.quads > 0)
     };
     let Some((_, first)) = used().next() else {
-        return;
+        return 0.0;
     };
     if used().all(|(_, component)| component == first) {
-        return;
+        return 0.0;
     }
     let (positions, component_of): (Vec<Vec3>, Vec<u32>) = used()
         .map(|(vertex, &component)| (vertex.position, component))
@@ -147,6 +175,8 @@ pub(crate) fn drop_phantoms(dual: &mut Dual, points: &[Vec3], reach: &[f32]) {
         }
     }
     dual.retain(|quad| !dropped[of[quad.vertices[0] as usize] as usize]);
+    let left_out = votes.iter().zip(&dropped).filter(|(_, dropped)| **dropped);
+    left_out.map(|(&votes, _)| f64::from(votes)).sum::<f64>() / points.len() as f64
 }
 
 /// How many points each of `count` components is the nearest one to.

@@ -3,6 +3,7 @@
 use crate::base::params::Orientation;
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
+use crate::orient::account::Account;
 use crate::orient::camera;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Edge, energy};
@@ -118,6 +119,21 @@ impl Evidence {
     /// Which way is up.
     pub(crate) fn axis(&self) -> Vec3 {
         self.up.unwrap_or(UP)
+    }
+
+    /// To the sensor that saw each site, where one is known and decided something; empty where none did.
+    pub fn sensor(&self, account: &Account) -> Vec<Vec3> {
+        let decided = |source| {
+            let mut sources = account.sources.iter();
+            sources.any(|s| s.source == source && s.share > 0.0)
+        };
+        if decided(Source::Viewpoints) {
+            self.viewpoints.clone()
+        } else if decided(Source::Camera) {
+            self.camera.clone()
+        } else {
+            Vec::new()
+        }
     }
 
     /// What it says of every sub-domain, and how far it is believed. `signs` and `parts` are those without evidence.

@@ -16,6 +16,12 @@
 //!
 //! A closed component that lies in the solid of an odd number of others is a cave's wall, and looks into the cave ([`caves`]).
 //! Last, the winding number of the whole is asked ([`inverted`]): it knows what is inside out where little ties it.
+//!
+//! **In**: [`Fits`] with their [`Sites`] (unit frame, normals of arbitrary sign), [`Evidence`]. **Out**: [`Signs`], one a sub-domain,
+//! oriented unit normals of the sites, and the [`Account`] of what decided where.
+//!
+//! **Cost**: linear in the edges, a dozen a sub-domain, times the logarithm of their number for the descent; winding numbers take
+//! n log n for n sites.
 
 pub mod account;
 pub(crate) mod camera;
@@ -43,7 +49,9 @@ use crate::orient::caves::turn_caves;
 use crate::orient::descent::{descend, settle};
 use crate::orient::domains::{Domains, mean_winding};
 use crate::orient::evidence::{Evidence, Known};
-use crate::orient::graph::{Adjacency, Edge, adjacency, components, edges, energy, spanning_signs};
+use crate::orient::graph::{
+    Adjacency, Edge, adjacency, along_sheets, components, edges, energy, spanning_signs,
+};
 use crate::orient::inverted::Inverted;
 use crate::orient::paper::{advancing_front, turn_outward};
 use crate::orient::parts::Parts;
@@ -188,7 +196,7 @@ impl Solve<'_> {
             parts = Parts::new(domains, self.edges, &mut signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
-        settle(self.edges, &known.unary, &mut signs);
+        settle(&along_sheets(domains, self.edges), &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
         let around = Inverted {
             domains,

@@ -1,4 +1,4 @@
-//! What is seen together from far away shows the same side.
+//! Parts that are seen side by side from far away are taken to show the same side.
 
 use crate::base::par;
 use crate::base::sort_keys::{key, sort_by_key};

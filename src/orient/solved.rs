@@ -1,4 +1,4 @@
-//! Signs and where they come from.
+//! [`Solved`]: the signs of the sub-domains, and the source that decided each.
 
 use crate::orient::parts::Parts;
 use crate::orient::source::Source;

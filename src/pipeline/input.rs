@@ -1,4 +1,4 @@
-//! What the pipeline starts from: the caller's points, or those that are not isolated, with all that is measured of them.
+//! The pipeline's input: the caller's points, without the isolated ones where these are dropped, with their octree and features.
 
 use crate::base::error::{Error, Result};
 use crate::base::params::{COLORS, Outliers, ReduceParams};

@@ -1,4 +1,4 @@
-//! What can be said of a cloud before anything is done to it.
+//! Counts, bounds, spacing and noise of a cloud, which stays as it is.
 
 use crate::base::error::Result;
 use crate::base::progress::Progress;

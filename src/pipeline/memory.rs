@@ -1,4 +1,4 @@
-//! What is remembered of a cloud from one reconstruction to the next.
+//! Keeps the octree, features and reduction of a cloud from one reconstruction to the next.
 
 use crate::base::error::Result;
 use crate::base::params::{Outliers, ReduceParams};

@@ -1,14 +1,15 @@
 //! The stages in order: what the crate, the package and the page call.
 //!
-//! - [`inspect`] looks at a cloud and changes nothing: counts, bounds, spacing, noise.
-//! - [`reduce`] takes it to fewer points (section 3): `input` (checks, octree, features, outliers), then [`crate::reduce`].
-//! - [`reconstruct`] takes it to a mesh (section 4): the same, then `sites` (the points that are fitted), [`crate::fit`],
+//! - [`inspect()`] looks at a cloud and changes nothing: counts, bounds, spacing, noise.
+//! - [`reduce()`] takes it to fewer points (section 3): `input` (checks, octree, features, outliers), then [`mod@crate::reduce`].
+//! - [`reconstruct()`] takes it to a mesh (section 4): the same, then `sites` (the points that are fitted), [`crate::fit`],
 //!   [`crate::orient`], [`crate::mesh`], [`crate::report`]. [`reconstruct_again`] remembers in a [`Memory`] what another call for
 //!   the same cloud needs not do again.
 //!
 //! The variants that own their cloud need 12 bytes a point less. **In**: a [`crate::Cloud`], in the unit frame of its own. **Out**:
 //! results in that frame, with functions that give the caller's.
 
+mod doubtful;
 mod input;
 mod inspect;
 mod memory;

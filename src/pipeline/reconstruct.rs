@@ -2,12 +2,13 @@
 
 use crate::base::clock::Clock;
 use crate::base::error::{Error, Result};
-use crate::base::params::{Orientation, Outliers, Resolution, SurfaceParams};
+use crate::base::params::{Orientation, Outliers, Resolution, Scatter, SurfaceParams};
 use crate::base::progress::Progress;
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::features::noise::quantile;
+use crate::features::scatter;
 use crate::fit;
 use crate::fit::cells::{self, Sites};
 use crate::mesh::attach::attach;
@@ -15,13 +16,14 @@ use crate::mesh::few;
 use crate::mesh::field::Field;
 use crate::mesh::{ExtractParams, Extracted, extract};
 use crate::orient;
+use crate::pipeline::doubtful::{invented, thin};
 use crate::pipeline::input::{Input, Origin, check_attributes};
 use crate::pipeline::memory::Memory;
 use crate::pipeline::reduce::{near_stats, reduce_report};
 use crate::pipeline::results::{Distances, ReducedCloud, Surface};
 use crate::pipeline::sites::{Noise, Reduction, points_to_fit, sites};
 use crate::report::distance::{mesh_distances, vertex_distances};
-use crate::report::{self, DistanceStats, ReduceReport, SurfaceReport};
+use crate::report::{self, DistanceStats, Looked, ReduceReport, SurfaceReport};
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -30,7 +32,13 @@ const MIN_POINTS: usize = 4;
 
 /// Edge length of the extraction grid in median spacings: vertices are moved onto the zero set, so that edges of 0.5 to
 /// 0.9 spacings give the same error (bench clouds: within 2 %), at 11 and 3.4 triangles a point before simplification.
-const EDGE: f64 = 0.75;
+const EDGE: f32 = 0.75;
+/// Where the opposite sheet is near for more than this share of the points,
+const WALLS: f64 = 0.01;
+/// walls are so many edges thick, all but the thinnest tenth,
+const ACROSS: f32 = 1.5;
+/// but edges have at least this share of the median spacing.
+const FINEST: f32 = 0.4;
 /// Triangles a fitted point, at most, unless the caller chooses a resolution.
 const TRIANGLES: usize = 3;
 
@@ -139,7 +147,7 @@ impl<'a> Measured<'a> {
 /// The surface through the reduced cloud, at `positions`.
 fn surface(
     input: Measured,
-    (mut reduced, positions, evidence): Reduction,
+    reduction: Reduction,
     params: &SurfaceParams,
     mut clock: Clock,
 ) -> Result<Surface> {
@@ -149,7 +157,22 @@ fn surface(
         noise,
         origin,
     } = input;
-    let (sites, site_of) = sites(&reduced, &positions, noise, params.orient, &mut clock)?;
+    let Reduction {
+        mut reduced,
+        positions,
+        evidence,
+        scatter,
+    } = reduction;
+    let is_scatter = |i: u32| scatter[i as usize];
+    let scattered: Vec<bool> = (reduced.shares.iter().map(|s| is_scatter(s.center[0]))).collect();
+    let drops = params.scatter == Scatter::Drop && !scatter::is_all(&scatter);
+    let dropped = if drops {
+        scatter
+    } else {
+        vec![false; scatter.len()]
+    };
+    let how = (noise, params.orient);
+    let (sites, site_of) = sites(&reduced, &positions, &dropped, how, &mut clock)?;
     drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);
@@ -166,15 +189,21 @@ fn surface(
     let few = few::mesh(&sites.tree.points);
     // What is solid around a room is extracted as what is solid in it: holes and borders mean the same then.
     let inward = few.is_none() && signs.look_inward(&sites);
+    let mut sensor = evidence.sensor(&signs.account);
     if inward {
         signs.invert();
+        sensor.iter_mut().for_each(|v| *v = -*v);
     }
     let Extracted {
-        mut mesh, holes, ..
+        mut mesh,
+        holes,
+        crossings,
+        dropped,
+        ..
     } = match few {
         Some(few) => few.placed((&sites, &mut signs), (params.orient, params.boundary)),
         None => {
-            let field = Field::new(&fits, &signs, &sites);
+            let field = Field::new(&fits, &signs, &sites, &sensor);
             let how = extract_params(&sites, params);
             extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
         }
@@ -204,7 +233,8 @@ fn surface(
         &carried.unwrap_or_default(),
     );
     let apart = mesh_distances(&input, &mesh.vertices, &mesh.triangles, &mut clock)?;
-    let distance = near_stats(&input, apart.iter().map(|a| a.distance));
+    let kept = (0..input.len()).filter(|&k| !(drops && scattered[k]));
+    let distance = near_stats(kept.map(|k| (input[k], apart[k].distance)));
     let distances = params.distances.then(|| {
         let mut points = vec![f32::NAN; origin.given];
         for (&i, apart) in order.iter().zip(&apart) {
@@ -225,6 +255,19 @@ fn surface(
     let mut doubts = report.doubts.clone();
     doubts.extend(report::doubts_of_shape(low, high, report.distance.rms));
     doubts.extend(report::doubts(&signs.account));
+    let scattered = scattered.iter().filter(|&&is| is).count();
+    let looked = Looked {
+        scatter: scattered as f64 / input.len() as f64,
+        drops,
+        thin: thin(&sites, noise.all),
+        invented: invented(&mesh, &sites),
+        tunnels: topology.genus.iter().sum::<i64>().max(0) as usize,
+        points: sites.tree.points.len(),
+        triangles: mesh.triangles.len(),
+        crossings,
+        islands: dropped,
+    };
+    doubts.extend(report::doubts_of_surface(&looked));
     let surface_report = SurfaceReport {
         reduce: ReduceReport {
             doubts,
@@ -236,6 +279,8 @@ fn surface(
         non_manifold_edges: topology.non_manifold_edges,
         genus: topology.genus,
         holes,
+        self_intersections: crossings,
+        scatter: if drops { scattered } else { 0 },
         refinements: fits.refinements,
         residual: DistanceStats::of(residuals()),
         beyond_accuracy: beyond as f64 / input.len() as f64,
@@ -319,7 +364,14 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
         Resolution::Edge(edge) => edge,
         Resolution::Auto => {
             let spacing = quantile(sites.spacing.clone(), 2);
-            (EDGE * f64::from(spacing)).clamp(1e-4, 0.25)
+            let walls: Vec<f32> = sites.thickness().collect();
+            let edge = if walls.len() as f64 > WALLS * sites.spacing.len() as f64 {
+                let wall = quantile(walls, 10) / ACROSS;
+                (EDGE * spacing).min(wall).max(FINEST * spacing)
+            } else {
+                EDGE * spacing
+            };
+            f64::from(edge).clamp(1e-4, 0.25)
         }
     };
     ExtractParams {

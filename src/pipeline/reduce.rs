@@ -31,7 +31,7 @@ pub fn reduce(
     reduce_cloud(Cow::Borrowed(cloud), params, progress)
 }
 
-/// [`reduce`] of a cloud that nobody needs any more: 12 bytes a point less.
+/// [`reduce()`] of a cloud that nobody needs any more: 12 bytes a point less.
 ///
 /// # Errors
 /// The same.
@@ -64,16 +64,16 @@ fn reduce_cloud(
     let normals = reduced.cloud.normals.as_deref().unwrap_or_default();
     let patches = Patches::fit(&Octree::build(&reduced.cloud.points), normals);
     let distances = cloud_distances(|k| points[k], &reduced.shares, &patches, &mut clock)?;
-    let distance = near_stats(&points, distances.into_iter().map(f64::from));
+    let distances = distances.into_iter().map(f64::from);
+    let distance = near_stats(points.iter().copied().zip(distances));
     let report = reduce_report((&origin, noise), &reduced, distance, &clock);
     origin.restore(&mut reduced);
     Ok(ReducedCloud { reduced, report })
 }
 
-/// Statistics of the distances of `points`, without those that are far from all others: one stray would be all that they tell.
-pub(crate) fn near_stats(points: &[Vec3], distances: impl Iterator<Item = f64>) -> DistanceStats {
-    let each = points.iter().zip(distances);
-    DistanceStats::of(each.filter(|(p, _)| in_frame(**p)).map(|(_, d)| d))
+/// Statistics of the distances of points, without those that are far from all others: one stray would be all that they tell.
+pub(crate) fn near_stats(each: impl Iterator<Item = (Vec3, f64)>) -> DistanceStats {
+    DistanceStats::of(each.filter(|&(p, _)| in_frame(p)).map(|(_, d)| d))
 }
 
 /// What a reduction did, alone or before a surface.

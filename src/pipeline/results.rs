@@ -1,4 +1,4 @@
-//! What the pipeline hands back.
+//! The types that the pipeline returns, and their values in the caller's frame.
 
 use crate::cloud::Attribute;
 use crate::mesh::Mesh;

@@ -1,7 +1,7 @@
 //! The points that a surface is fitted to: the reduced cloud, or all points where that would be too few.
 
 use crate::base::error::Result;
-use crate::base::params::{ReduceParams, SurfaceParams, Target};
+use crate::base::params::{Method, ReduceParams, SurfaceParams, Target};
 use crate::base::progress::Progress;
 use crate::cloud::copies::copies;
 use crate::cloud::octree::Octree;
@@ -9,19 +9,50 @@ use crate::cloud::{Cloud, in_frame};
 use crate::features::Features;
 use crate::features::lines::Thinned;
 use crate::features::noise::Scales;
+use crate::features::scatter;
 use crate::fit::cells::Sites;
 use crate::orient::evidence::Evidence;
-use crate::reduce::{self, Reduced};
+use crate::reduce::{self, Reduced, walls};
 use glam::Vec3;
 
 /// A reduction that would leave fewer points than this for a surface is not done: sub-domains need about 30.
 const MIN_REDUCED: usize = 64;
 
+/// Thin walls have more points than were asked for where those would be this many times as many.
+const MORE: f64 = 1.1;
+/// Where they are more than this share of all, all are fitted.
+const MOST: f64 = 0.7;
+
 /// Points of one terrace are off by the same, so that their mean is, too: noise of steps counts so many times.
 const TERRACE: f32 = 2.0;
 
-/// The reduced cloud, where its points are for the fit, and what is known of their outer side.
-pub(crate) type Reduction = (Reduced, Vec<Vec3>, Evidence);
+/// The reduced cloud and what a surface is made of it with.
+#[derive(Debug, Clone)]
+pub(crate) struct Reduction {
+    pub(crate) reduced: Reduced,
+    /// Where its points are for the fit.
+    pub(crate) positions: Vec<Vec3>,
+    /// What is known of their outer side.
+    pub(crate) evidence: Evidence,
+    /// Which of them lie where there is no surface.
+    pub(crate) scatter: Vec<bool>,
+}
+
+impl Reduction {
+    fn new(
+        (cloud, tree): (&Cloud, &Octree),
+        reduced: Reduced,
+        positions: Vec<Vec3>,
+        noise: f32,
+    ) -> Reduction {
+        Reduction {
+            evidence: Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len()),
+            scatter: scatter::places(tree, &positions, noise),
+            reduced,
+            positions,
+        }
+    }
+}
 
 /// The reduced cloud that surfaces are fitted to, and where its points are for that.
 pub(crate) fn points_to_fit(
@@ -31,25 +62,38 @@ pub(crate) fn points_to_fit(
     params: &SurfaceParams,
     progress: &mut dyn Progress,
 ) -> Result<Reduction> {
-    let n = tree.points.len();
+    let (n, noise) = (tree.points.len(), features.noise);
     let is_few = |count: usize| count < MIN_REDUCED.min(n);
-    if let Some(params) = &params.reduce {
-        let count = params.target.count(n);
-        if !count.is_some_and(is_few) {
+    let mut reason = String::new();
+    if let Some(asked) = &params.reduce {
+        let (target, why) = with_walls(tree, &features, asked);
+        reason = why;
+        let params = ReduceParams {
+            target,
+            ..asked.clone()
+        };
+        let count = target.count(n);
+        let takes_all = count == Some(n) && target != asked.target;
+        if !count.is_some_and(is_few) && !takes_all {
             // The validity index may choose fewer centres, and a tolerance or a flatness any number: then the features are
             // asked again.
             let spare = count
                 .is_none_or(|count| count < 2 * MIN_REDUCED)
                 .then(|| features.clone());
-            let reduced = reduce::reduce(cloud, tree, features, params, progress)?;
+            let mut reduced = reduce::reduce(cloud, tree, features, &params, progress)?;
             match spare {
                 Some(spare) if is_few(reduced.cloud.len()) => features = spare,
                 _ => {
+                    if reduced.reason.is_empty() {
+                        reduced.reason = reason;
+                    }
                     let positions = reduced.cloud.points.clone();
-                    let evidence = evidence(cloud, tree, &reduced);
-                    return Ok((reduced, positions, evidence));
+                    return Ok(Reduction::new((cloud, tree), reduced, positions, noise));
                 }
             }
+        }
+        if asked.target.count(n).is_none_or(is_few) {
+            reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
         }
     }
     let all = ReduceParams {
@@ -58,17 +102,30 @@ pub(crate) fn points_to_fit(
         cells: params.reduce.as_ref().is_some_and(|r| r.cells),
         ..Default::default()
     };
-    let positions = (0..n).map(|i| features.denoised(tree, i)).collect();
+    let positions: Vec<Vec3> = (0..n).map(|i| features.denoised(tree, i)).collect();
     let mut reduced = reduce::reduce(cloud, tree, features, &all, progress)?;
-    if params.reduce.is_some() {
-        reduced.reason = format!("fewer than {MIN_REDUCED} points would be left: all were fitted");
-    }
-    let evidence = evidence(cloud, tree, &reduced);
-    Ok((reduced, positions, evidence))
+    reduced.reason = reason;
+    Ok(Reduction::new((cloud, tree), reduced, positions, noise))
 }
 
-fn evidence(cloud: &Cloud, tree: &Octree, reduced: &Reduced) -> Evidence {
-    Evidence::of(cloud, tree, &reduced.shares, reduced.cloud.len())
+/// The target, or where a share of the points is too few to keep thin walls apart, how many are enough; and why.
+fn with_walls(tree: &Octree, features: &Features, params: &ReduceParams) -> (Target, String) {
+    let n = tree.points.len();
+    if let (Target::Ratio(_), Some(count), Method::Adaptive) =
+        (params.target, params.target.count(n), params.method)
+    {
+        let needed = walls::needed(tree, features, count);
+        if needed as f64 > MORE * count as f64 {
+            let enough = if needed as f64 > MOST * n as f64 {
+                n
+            } else {
+                needed
+            };
+            let reason = format!("thin walls need more points: {enough} were fitted");
+            return (Target::Count(enough), reason);
+        }
+    }
+    (params.target, String::new())
 }
 
 /// What is known of the input's noise: standard deviations across the surface, in the unit frame.
@@ -91,18 +148,19 @@ impl Noise {
     }
 }
 
-/// The reduced points, at `positions`, as sites of the fit, and the site of each: copies of a point are one, which stands for
-/// the area of all; so are points of a scan line that are much nearer to each other than to the next line.
+/// The reduced points, at `positions`, as sites of the fit, but for those `without` a surface, and the site of each: copies of a
+/// point are one, which stands for the area of all; so are points of a scan line that are much nearer to each other than to the
+/// next line.
 pub(crate) fn sites(
     reduced: &Reduced,
     positions: &[Vec3],
-    input: Noise,
-    orient: bool,
+    without: &[bool],
+    (input, orient): (Noise, bool),
     progress: &mut dyn Progress,
 ) -> Result<(Sites, Vec<Option<u32>>)> {
     // Points that the unit frame leaves out are no part of a surface.
     let framed: Vec<u32> = (0..positions.len() as u32)
-        .filter(|&i| in_frame(positions[i as usize]))
+        .filter(|&i| in_frame(positions[i as usize]) && !without[i as usize])
         .collect();
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);

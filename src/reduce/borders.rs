@@ -73,12 +73,11 @@ fn outermost(
     let radius = (EMPTY[0] * spacing).max(EMPTY[1] * features.spacing[k]);
     let last = features.denoised(tree, k);
     let onwards = outward.reject_from(features.normals[k]).try_normalize()?;
-    let away = |p: Vec3| tree.nearest(p).distance2.sqrt();
-    if away(last + radius * onwards) < 0.95 * radius {
+    if tree.has_nearer(last + radius * onwards, 0.95 * radius) {
         return None;
     }
     let straight = last - (last - position).dot(aside) * aside;
     // Next to a corner straight out can be off the sheet.
-    let off = away(straight) > 0.75 * features.spacing[k];
+    let off = !tree.has_nearer(straight, 0.75 * features.spacing[k]);
     Some(if off { last } else { straight })
 }

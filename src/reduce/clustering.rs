@@ -1,4 +1,4 @@
-//! What the clustering methods hand on.
+//! [`Clustering`]: the centres and memberships that either method returns.
 
 use crate::reduce::shares::Shares;
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! How many points the surface deserves where: the wanted spacing of the reduced points.
+//! The density of the reduced points: their wanted spacing at every place of the surface.
 //!
 //! 1. Curvature asks for a density ρ ∝ κ^α. Against the largest error of a piecewise linear surface α = 1 is best,
 //!    against the rms error 2/3 (Clark, *Proc. SIGGRAPH* 1976 onwards; d'Azevedo and Simpson, 1991); α = ½ was the best
@@ -7,6 +7,7 @@
 //! 3. A gradient limit |∇h| ≤ [`GRADING`] lets the spacing h grow only slowly away from where it is small; without it
 //!    the error of a CAD part more than doubles.
 //! 4. The scale makes the expected counts add up to the target.
+//! 5. On thin walls the spacing is at most half of the distance to the other side, whatever the curvature says ([`walls`]).
 //!
 //! Steps 1-3 work on groups of a dozen points, which is the resolution that the curvature estimate has anyway.
 
@@ -21,6 +22,7 @@ use crate::cloud::neighborhood::{Block, CELL, Neighborhood, bounds, even_reach};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
+use crate::reduce::walls;
 
 /// Smallest spacing, as a share of the mean: three times the mean density.
 const FINEST: f32 = 0.577;
@@ -63,16 +65,15 @@ impl Density {
         let deserved: Vec<f64> = deserved(features, &relative).collect();
         let scale = scale_to(&deserved, count);
         let unit = 1.0 / scale.sqrt();
-        Density {
-            spacing: relative
-                .iter()
-                .map(|&h| (f64::from(h) * unit) as f32)
-                .collect(),
-            share: deserved
-                .iter()
-                .map(|&d| (d * scale).min(1.0) as f32)
-                .collect(),
-        }
+        let spacing = relative.iter().map(|&h| (f64::from(h) * unit) as f32);
+        let share = deserved.iter().map(|&d| (d * scale).min(1.0) as f32);
+        let mut density = Density {
+            spacing: spacing.collect(),
+            share: share.collect(),
+        };
+        let Density { spacing, share } = &mut density;
+        walls::refine(tree, features, (spacing, share), &deserved, count);
+        density
     }
 
     /// The number of reduced points that the shares add up to, rounded up.

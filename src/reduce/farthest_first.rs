@@ -1,4 +1,4 @@
-//! Where the centres of weighted fuzzy c-means start.
+//! Start centres of weighted fuzzy c-means, by farthest-first traversal.
 
 use crate::base::lanes::{LANES, Lanes};
 use crate::base::par;

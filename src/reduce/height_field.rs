@@ -1,4 +1,4 @@
-//! The surface of which only points with normals are known: the reduced cloud's.
+//! The surface that a reduced cloud stands for, made of its points and normals alone.
 //!
 //! Every reduced point has a patch: a quadric height field over the mean tangent plane of the reduced points around it on its
 //! own face and sheet, fitted to their positions and normals by least squares with Wendland weights. The distance of a point

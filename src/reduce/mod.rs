@@ -25,6 +25,7 @@ pub mod density;
 pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
+mod nearest;
 pub mod paper;
 pub(crate) mod places;
 pub mod placement;
@@ -32,13 +33,13 @@ pub mod shares;
 mod stats;
 pub(crate) mod surroundings;
 pub(crate) mod tolerance;
+pub(crate) mod walls;
 
 use std::ops::Range;
 
 use glam::Vec3;
 
 use crate::base::error::Result;
-use crate::base::par;
 use crate::base::params::{Method, Placement, ReduceParams, Target};
 use crate::base::power::Fuzzifier;
 use crate::base::progress::{Part, Progress, Stage};
@@ -132,11 +133,7 @@ pub fn reduce(
     let nearest = if plan.placement == Placement::Sample {
         placement::snap(at, &members, &mut placed)
     } else {
-        par::map(
-            placed.len(),
-            || (),
-            |i, ()| placement::nearest(at, &members, i, placed[i].position),
-        )
+        nearest::nearest(at, &members, &placed)
     };
     let cells = params.cells.then(|| {
         let ranges = clustering.cells.iter();

@@ -1,4 +1,4 @@
-//! What a clustering did, in figures.
+//! Statistics of a clustering: objective, validity, evenness, sweeps.
 
 use crate::base::power::Fuzzifier;
 use crate::cloud::octree::Octree;

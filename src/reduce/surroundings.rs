@@ -1,4 +1,4 @@
-//! How the centres lie to each other: the distance to the nearest other one, and the balance of those around.
+//! Where the other centres lie around each centre: the distance to the nearest, and the mean of those near it.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! What may not be as it should: doubts.
+//! [`Doubt`]s: what may be wrong with a result, as codes for programs and sentences for people.
 
 use crate::orient::account::{Account, Source};
 use serde::Serialize;
@@ -71,6 +71,91 @@ pub(crate) fn doubts_of_steps(steps: f32) -> Vec<Doubt> {
         ),
         share: None,
     }]
+}
+
+/// What was looked at of a surface.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Looked {
+    /// Share of the input points through which there is no surface, and whether the mesh leaves them out.
+    pub(crate) scatter: f64,
+    pub(crate) drops: bool,
+    /// Share of the fitted points whose wall is thinner than can be known.
+    pub(crate) thin: f64,
+    /// Share of the area that is far from all points.
+    pub(crate) invented: f64,
+    /// Handles of all components.
+    pub(crate) tunnels: usize,
+    /// Fitted points.
+    pub(crate) points: usize,
+    pub(crate) triangles: usize,
+    /// Triangles that cross others.
+    pub(crate) crossings: usize,
+    /// Share of the fitted points whose pieces were left out as too small.
+    pub(crate) islands: f64,
+}
+
+/// So many tunnels may be real, and one for so many points.
+const TUNNELS: (usize, usize) = (20, 400);
+
+/// What is to be said of it.
+pub(crate) fn doubts_of_surface(looked: &Looked) -> Vec<Doubt> {
+    let mut doubts = Vec::new();
+    let mut doubt = |code, share: f64, message: String| {
+        doubts.push(Doubt {
+            code,
+            message,
+            share: Some(share),
+        });
+    };
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    if looked.scatter > LITTLE {
+        let kept = if looked.drops {
+            "the mesh leaves them out"
+        } else {
+            "the surface there is made up"
+        };
+        let message = format!(
+            "{} of the points lie as in foliage, dust or a filled volume, with no surface through them: {kept}.",
+            percent(looked.scatter)
+        );
+        doubt("scatter", looked.scatter, message);
+    }
+    if looked.thin > LITTLE {
+        let message = format!(
+            "{} of the surface belongs to walls that are about as thin as the points are apart, or as the noise: their shape is \
+             not known there.",
+            percent(looked.thin)
+        );
+        doubt("thin", looked.thin, message);
+    }
+    if looked.invented > LITTLE {
+        let message = format!(
+            "{} of the area is far from any point.",
+            percent(looked.invented)
+        );
+        doubt("far-area", looked.invented, message);
+    }
+    if looked.tunnels > TUNNELS.0.max(looked.points / TUNNELS.1) {
+        let message = format!(
+            "The surface has {} tunnels: the points do not tell well what is inside.",
+            looked.tunnels
+        );
+        let share = looked.tunnels as f64 / looked.points.max(1) as f64;
+        doubt("tunnels", share, message);
+    }
+    if looked.crossings > 0 {
+        let message = format!("{} triangles cross others.", looked.crossings);
+        let share = looked.crossings as f64 / looked.triangles.max(1) as f64;
+        doubt("self-intersections", share, message);
+    }
+    if looked.islands > LITTLE {
+        let message = format!(
+            "Pieces too small to be a surface were left out: {} of the points.",
+            percent(looked.islands)
+        );
+        doubt("islands-dropped", looked.islands, message);
+    }
+    doubts
 }
 
 /// What is to be said of scan lines far apart, on which this share of the points is.

@@ -20,7 +20,8 @@ pub use crate::mesh::topology::{Topology, area, topology, volume};
 pub use crate::orient::account::{Account as OrientationReport, Source, SourceShare, WeakestTie};
 pub use knowledge::Doubt;
 pub(crate) use knowledge::{
-    doubts, doubts_of_faces, doubts_of_lines, doubts_of_shape, doubts_of_steps,
+    Looked, doubts, doubts_of_faces, doubts_of_lines, doubts_of_shape, doubts_of_steps,
+    doubts_of_surface,
 };
 
 /// Mean, root mean square and maximum of distances.
@@ -114,6 +115,10 @@ pub struct SurfaceReport {
     pub genus: Vec<i64>,
     /// Holes that were closed and rims that were left open, the widest first.
     pub holes: Vec<Hole>,
+    /// Triangles that cross others, after what could be mended was.
+    pub self_intersections: usize,
+    /// Input points that the mesh leaves out, as there is no surface through them: foliage, dust, filled volumes.
+    pub scatter: usize,
     /// Sub-domains that were split and fitted again.
     pub refinements: usize,
     /// Residual of the joined field at the input points.

@@ -1,8 +1,14 @@
-//! Sample scans that are generated, not shipped: three solids whose surface is known exactly, and a simulated laser
-//! scanner that measures them.
+//! Sample scans with a known surface, generated and not shipped. The duck and the pig take the place of the paper's scans of
+//! section 5 and have their numbers of points.
 //!
-//! The duck and the pig take the place of the paper's scans of section 5 and have their numbers of points. The truth
-//! stays at hand: [`Model::distance`] says how far any point is from the surface.
+//! 1. `solid`: signed distances and what joins them; `toys` and `machined`: the solids that are made of these.
+//! 2. [`Model`]: which solid, how many points, and its truth: [`Model::distance`] says how far any point is from the surface.
+//! 3. `scanner`: rays from 20 poses on a turntable, noise along the ray, thinned to the number of points.
+//!
+//! **In**: a model, a number of points, a seed, noise along the ray as a fraction of the diagonal. **Out**: a [`Sample`]: points in
+//! centimetres, y up, without normals, as a scanner gives them, and the truth beside each.
+//!
+//! **Cost**: linear in the points; a ray is traced through the solid's signed distance.
 
 mod machined;
 mod model;

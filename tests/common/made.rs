@@ -193,6 +193,60 @@ fn values(kept: Kept, i: usize) -> Vec<RecordValue> {
     values
 }
 
+/// An E57 file of a scan of so many points with rows, times that start late, and values of an extension, and of one without them.
+pub fn e57_with_extras(points: usize) -> Vec<u8> {
+    let record = |name: RecordName, data_type: RecordDataType| Record { name, data_type };
+    let whole = RecordDataType::Integer { min: 0, max: 1000 };
+    let temperature = RecordName::Unknown {
+        namespace: "demo".into(),
+        name: "temperature".into(),
+    };
+    let places = [
+        Record::CARTESIAN_X_F64,
+        Record::CARTESIAN_Y_F64,
+        Record::CARTESIAN_Z_F64,
+        Record::CARTESIAN_INVALID_STATE,
+    ];
+    let mut records = places.to_vec();
+    records.extend([
+        record(RecordName::RowIndex, whole.clone()),
+        record(RecordName::ColumnIndex, whole),
+        record(RecordName::TimeStamp, RecordDataType::F64),
+        record(temperature, RecordDataType::F32),
+    ]);
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = E57Writer::new(&mut file, "{0}").expect("a writer");
+    let extension = e57::Extension::new("demo", "http://example.org/demo");
+    writer.register_extension(extension).expect("an extension");
+    for (scan, prototype) in [records, places.to_vec()].into_iter().enumerate() {
+        let extras = prototype.len() > places.len();
+        let mut cloud = writer
+            .add_pointcloud(&format!("{{{scan}}}"), prototype)
+            .expect("a scan");
+        for i in 0..points {
+            let mut values: Vec<RecordValue> = position(i)
+                .map(|x| RecordValue::Double(f64::from(x) * 0.001))
+                .into();
+            // Every third point has a direction alone, every seventh nothing.
+            let state = if i % 7 == 6 { 2 } else { i64::from(i % 3 == 2) };
+            values.push(RecordValue::Integer(state));
+            if extras {
+                values.extend([
+                    RecordValue::Integer(i as i64 % 10),
+                    RecordValue::Integer(0),
+                    RecordValue::Double(1e9 + i as f64),
+                    RecordValue::Single(20.5 + i as f32),
+                ]);
+            }
+            cloud.add_point(values).expect("a point");
+        }
+        cloud.finalize().expect("a scan written");
+    }
+    writer.finalize().expect("a file written");
+    drop(writer);
+    file.into_inner()
+}
+
 /// A GLB file of this description and data.
 pub fn glb(json: &str, data: &[u8]) -> Vec<u8> {
     let padded = |content: &[u8], by: u8| {

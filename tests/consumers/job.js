@@ -15,7 +15,7 @@ export async function job(options) {
     await engine.dispose();
   }
   const core = await load({ wasmUrl: options?.wasmUrl });
-  hashes.push(await hash(core.reconstruct(core.sample(scan.model, { count: scan.count, seed: scan.seed }))));
+  hashes.push(await hash(core.reconstruct(await core.sample(scan.model, { count: scan.count, seed: scan.seed }))));
   return { hashes, reasons };
 }
 

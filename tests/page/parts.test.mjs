@@ -123,11 +123,10 @@ test('an axis has round values that tell how it runs, and not too many', () => {
 test('what was surveyed stands on its z, and so does what is flat', () => {
   assert.equal(likelyUp({}, [1, 2, 1]), 'y');
   assert.equal(likelyUp({}, [10, 20, 2]), 'z');
-  assert.equal(likelyUp({ file: { format: 'las' } }, [24, 29, 36]), 'z');
-  assert.equal(likelyUp({ file: { format: 'ply' } }, [24, 29, 36]), 'y');
-  assert.equal(likelyUp({ file: { format: 'xyz' }, origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
+  assert.equal(likelyUp({}, [24, 29, 36]), 'y');
+  assert.equal(likelyUp({ origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
   assert.equal(likelyUp({ seenFromAbove: true }, [24, 29, 36]), 'z');
-  assert.equal(likelyUp({ file: { format: 'las' }, up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
+  assert.equal(likelyUp({ up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
 });
 
 test('what is kept, in words', () => {

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
+import { read } from '../../pkg/index.node.js';
 import { CONTROLS } from '../../www/src/controls/settings.js';
 import { PATIENCE, start } from './browser.mjs';
 import { spherePoints, toPly } from './scans.mjs';
@@ -127,7 +128,6 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
 
   await t.test('every format: its size first, and what is in it', async () => {
     await page.click('#formats > summary');
-    await page.waitForSelector('#save-reduced-xyz');
     const [triangles, kept] = [await site.number('triangles'), await site.number('outputPoints')];
     const count = (pattern) => (bytes) => bytes.toString('latin1').match(pattern)?.length ?? 0;
     const glb = (bytes) => {
@@ -137,19 +137,23 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
       return indices === undefined ? accessors[attributes.POSITION].count : accessors[indices].count / 3;
     };
     const header = (element) => (bytes) => Number(new RegExp(`element ${element} (\\d+)`).exec(bytes.toString('latin1', 0, 2000))[1]);
+    const points = async (bytes) => (await read(bytes)).positions.length / 3;
     const holds = {
       'mesh-glb': [glb, triangles], 'mesh-ply': [header('face'), triangles], 'mesh-obj': [count(/^f /gm), triangles],
-      'mesh-stl': [(bytes) => bytes.readUInt32LE(80), triangles],
+      'mesh-stl': [(bytes) => bytes.readUInt32LE(80), triangles], 'mesh-3mf': [async (bytes) => (await read(bytes)).faces, triangles],
+      'mesh-usdz': [(bytes) => count(/\d, (?=\d)/g)(/faceVertexCounts = \[(.*?)\]/.exec(bytes.toString('latin1'))?.[1] ?? '') + 1, triangles],
       'reduced-ply': [header('vertex'), kept], 'reduced-glb': [glb, kept], 'reduced-xyz': [count(/^[-\d]/gm), kept],
+      'reduced-pcd': [points, kept], 'reduced-las': [points, kept],
     };
+    for (const id of Object.keys(holds)) await page.waitForSelector(`#save-${id}`);
     assert.deepEqual((await page.$$eval('.format', (rows) => rows.map((row) => row.id.slice(5)))).sort(), Object.keys(holds).sort());
-    for (const [id, [read, expected]] of Object.entries(holds)) {
+    for (const [id, [holding, expected]] of Object.entries(holds)) {
       const size = Number(await page.getAttribute(`#save-${id} data`, 'value'));
       const saved = page.waitForEvent('download');
       await page.click(`#save-${id}`);
       const bytes = await readFile(await (await saved).path());
       assert.equal(bytes.length, size, id);
-      assert.equal(read(bytes), expected, id);
+      assert.equal(await holding(bytes), expected, id);
     }
     // The one button takes what most people need.
     assert.match(await page.innerText('#save'), /GLB/);

@@ -103,9 +103,7 @@ async function bareWasm() {
   return bindings;
 }
 
-test('the defaults are those of Rust', async () => {
-  const wasm = await bareWasm();
-  assert.deepEqual(DEFAULTS, wasm.defaults());
+test('the defaults cannot be changed', () => {
   assert.ok(Object.isFrozen(DEFAULTS) && Object.isFrozen(DEFAULTS.reduce) && Object.isFrozen(DEFAULTS.reconstruct.reduce.target));
 });
 

@@ -44,7 +44,7 @@ async function reached(names, found = new Set()) {
 }
 
 test('the tarball holds what the entries reach, documentation and licences, and nothing else', async () => {
-  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
+  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'samples'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
   const entries = [manifest.exports, manifest.bin].flatMap(targets).filter((name) => !name.includes('*'));
   const needed = await reached([...entries, ...wasm]);
   const documents = tarball.contents.filter((name) => /^docs\/[a-z-]+\.md$/.test(name));
@@ -115,7 +115,7 @@ test('the element is not larger than its budget', async (t) => {
 });
 
 /** Most bytes of each part, gzipped. */
-const BUDGET = { single: 382_000, threads: 418_000, files: 168_000, las: 116_000, e57: 146_000, packed: 246_000, pictures: 174_000, exports: 211_000, script: 18_800 };
+const BUDGET = { single: 382_000, threads: 418_000, files: 168_000, las: 120_000, e57: 146_000, packed: 246_000, pictures: 174_000, exports: 221_000, script: 18_800 };
 
 test('nothing is larger than its budget', async () => {
   const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;

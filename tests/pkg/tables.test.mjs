@@ -26,6 +26,20 @@ test('a table says what its columns were taken for', async () => {
   assert.deepEqual(table.rows[0], ['1,5', '2,5', '3,5', '7']);
 });
 
+test('a table that is refused shows its first rows', async (t) => {
+  const text = bytes('right;up;deep;what\n1,5;2,5;3,5;a\n4,5;5,5;6,5;b\n');
+  const refused = await rejection(read(text, { name: 'scan.csv' }));
+  assert.equal(refused.code, 'bad-file');
+  const { rows, names, delimiter, decimal } = refused.table;
+  assert.deepEqual([rows[0], names, delimiter, decimal], [['1,5', '2,5', '3,5', 'a'], ['right', 'up', 'deep', 'what'], ';', ',']);
+  const cloud = await read(text, { columns: ['x', 'z', 'y', '-'] });
+  assert.deepEqual([...cloud.positions], [1.5, 3.5, 2.5, 4.5, 6.5, 5.5]);
+  assert.equal((await rejection(read(bytes('ply\nformat x\n')))).table, undefined);
+  // Behind a worker's border, too.
+  const engine = await engineFor(t, { threads: 1, worker: true });
+  assert.deepEqual((await rejection(engine.read(text, { name: 'scan.csv' }))).table.rows, rows);
+});
+
 test('the caller says what the columns are', async () => {
   const table = bytes('# made by hand\na:b:c:d\n9:1:2:3\n8:4:5:6\n');
   const cloud = await read(table, { columns: ['weight', 'x', 'y', 'z'], delimiter: ':', skip: 1 });
@@ -128,6 +142,8 @@ test('the scans of an archive are one cloud', async (t) => {
   }
   assert.equal((await read(zip({ 'notes.txt': '1 2 3\n' }))).positions.length, 3);
   assert.equal((await read(gzipSync(PLY), { name: 'scan.ply.gz' })).positions.length, 6);
+  const members = Buffer.concat(['1 2 3\n4 5 6\n', '7 8 9\n'].map((part) => gzipSync(part)));
+  assert.deepEqual([...(await read(members, { name: 'scan.xyz.gz' })).positions], [1, 2, 3, 4, 5, 6, 7, 8, 9]);
   const none = await rejection(read(zip({ 'a.doc': 'x', 'b.doc': 'y' })));
   assert.deepEqual([none.code, none.found], ['unsupported-file', 'a.doc, b.doc']);
 });

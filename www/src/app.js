@@ -26,7 +26,7 @@ import { meaningOf } from './controls/targets.js';
  * @import { SampleName } from './controls/samples.js'
  */
 
-/** @type {Record<import('pointweave/viewer').Axis, [number, number, number]>} */
+/** @type {Record<string, [number, number, number]>} */
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y': [0, -1, 0], '-z': [0, 0, -1] };
 
 /** Puts the session, the picture and the controls together. */
@@ -34,9 +34,15 @@ export class App {
   #root = byId('app', HTMLElement);
   #session = new Session();
   #look = new Look(this.#root, () => this.#noteAddress(), () => this.#stand({ up: this.#look.upright }));
-  #standing = new Standing((stand) => this.#stand(stand));
+  #standing = new Standing((stand) => this.#stand(stand), (chosen) => {
+    if (chosen) this.#side.stop();
+    this.#look.choosePiece(chosen);
+  });
   #numbers = new Numbers();
-  #side = new SideCard((triangle) => this.#session.flip(triangle), (chosen) => this.#look.choosePiece(chosen));
+  #side = new SideCard((triangle) => this.#session.flip(triangle), (chosen) => {
+    if (chosen) this.#standing.stop();
+    this.#look.choosePiece(chosen);
+  });
   #sharing = new Sharing();
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
@@ -81,7 +87,7 @@ export class App {
     on('made', (/** @type {Outcome} */ outcome) => this.#made(outcome));
     on('turned', ({ outcome, piece }) => this.#turned(outcome, piece));
     on('cancelled', () => this.#cancelled());
-    on('failed', ({ error, title }) => this.#failed(error, title));
+    on('failed', ({ error, title, given }) => this.#failed(error, title, given));
   }
 
   #listenToControls() {
@@ -124,7 +130,7 @@ export class App {
     byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
     this.#showSize(scan);
     this.#look.opened(scan);
-    this.#standing.show({ up: this.#look.upright, unit: scan.cloud.unit });
+    this.#showStanding(scan);
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
@@ -142,6 +148,7 @@ export class App {
   #made(/** @type {Outcome} */ outcome) {
     const { reduced, mesh } = outcome;
     this.#look.made(outcome);
+    this.#showStanding(outcome.scan);
     this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
     this.#side.show(mesh, { all: this.#flipped, piece: false });
     this.#saving.offer(outcome);
@@ -164,12 +171,21 @@ export class App {
   #stand(/** @type {import('./controls/standing.js').Stand} */ { up, unit }) {
     const { scan, outcome } = this.#session;
     if (!scan) return;
-    if (up) this.#look.upright = up;
-    this.#session.stand({ up: up && AXES[up], unit });
-    this.#standing.show({ up: this.#look.upright, unit: scan.cloud.unit });
+    if (up) this.#look.stand(up);
+    this.#session.stand({ up: typeof up === 'string' ? AXES[up] : up, unit });
+    this.#showStanding(scan);
+    if (this.#session.stale) this.#run.hidden = false;
     this.#showSize(scan);
     this.#numbers.unit = scan.cloud.unit;
+    if (unit) this.#look.relabel();
     if (outcome) this.#saving.offer(outcome);
+  }
+
+  /** How the scan stands, and whether what was made of it would be another now. */
+  #showStanding(/** @type {Scan} */ { cloud: { up, unit } }) {
+    const picked = up !== undefined && !Object.values(AXES).some((axis) => axis.every((x, i) => Math.abs(x - up[i]) < 1e-6));
+    const mesh = Boolean(this.#session.outcome?.mesh);
+    this.#standing.show({ up: this.#look.upright, unit }, { picked, mesh, stale: this.#session.stale });
   }
 
   #showSize(/** @type {Scan} */ { frame, cloud: { unit } }) {
@@ -185,14 +201,20 @@ export class App {
     this.#run.hidden = !this.#session.scan;
   }
 
-  #failed(/** @type {unknown} */ error, /** @type {string} */ title) {
+  /** @param {any} error @param {string} title @param {File} [given] the file that could not be read */
+  #failed(error, title, given) {
     this.#message.showError(error, title);
+    // Whoever knows what the columns of a table are can still have it read.
+    if (given && error?.table) {
+      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#session.openFile(given, { columns: chosen }));
+    }
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
   }
 
   #escape() {
     if (this.#message.open) this.#message.hide();
     else if (this.#side.choosing) this.#side.stop();
+    else if (this.#standing.picking) this.#standing.stop();
     else this.#session.cancel();
   }
 

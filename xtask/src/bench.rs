@@ -6,17 +6,36 @@ use crate::build;
 use crate::packages;
 use crate::shell::{Result, command, root, run, say};
 
-/// Runs the benchmarks: `orient` natively, the others on a fresh build.
+/// Runs the benchmarks: `orient` natively, the others on a fresh build. `formats` compares files with what other programs read
+/// and write.
 pub fn bench(arguments: &[String]) -> Result<()> {
-    let is_orient = |argument: &&String| *argument == "orient";
-    let (orient, others): (Vec<&String>, Vec<&String>) = arguments.iter().partition(is_orient);
+    let asked = |name: &str| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
+    let is_own = |argument: &&String| !["orient", "formats"].contains(&argument.as_str());
+    let others: Vec<&String> = arguments.iter().filter(is_own).collect();
     if arguments.is_empty() || !others.is_empty() {
         bench_package(&others)?;
     }
-    if arguments.is_empty() || !orient.is_empty() {
+    if asked("formats") {
+        compare_formats()?;
+    }
+    if asked("orient") {
         bench_orientation()?;
     }
     Ok(())
+}
+
+/// Each format from our writers to the readers of others, and back.
+fn compare_formats() -> Result<()> {
+    build::ensure()?;
+    packages::npm(&root().join("tests"))?;
+    let mut compare = command("node");
+    compare
+        .arg("tests/independent/formats.mjs")
+        .env("PEERS_PYTHON", packages::formats()?);
+    run(
+        &mut compare,
+        "a file is not what it was meant to be; the table above says which",
+    )
 }
 
 fn bench_package(arguments: &[&String]) -> Result<()> {

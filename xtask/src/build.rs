@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 use std::time::SystemTime;
 
 use crate::options;
@@ -28,14 +29,16 @@ pub enum Build {
     E57,
     /// The decoders of textures' pictures alone.
     Pictures,
-    /// The writers that are not in the engine, alone.
+    /// The writers alone.
     Exports,
+    /// Sample scans alone.
+    Samples,
     /// The readers of what is packed as a whole.
     Packed,
 }
 
 impl Build {
-    pub const ALL: [Build; 8] = [
+    pub const ALL: [Build; 9] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -43,6 +46,7 @@ impl Build {
         Build::E57,
         Build::Pictures,
         Build::Exports,
+        Build::Samples,
         Build::Packed,
     ];
     /// Those with the whole engine.
@@ -57,6 +61,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Samples => "samples",
             Self::Packed => "packed",
         }
     }
@@ -71,6 +76,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Samples => "samples",
             Self::Packed => "packed",
         }
     }
@@ -85,6 +91,7 @@ impl Build {
             | Self::E57
             | Self::Pictures
             | Self::Exports
+            | Self::Samples
             | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
@@ -181,12 +188,9 @@ const WASM_OPT_FEATURES: [&str; 8] = [
 /// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
 pub fn build() -> Result<()> {
     options::write()?;
-    let builder = Builder::ready()?;
-    for build in Build::ALL {
+    Builder::ready()?.make_all(&Build::ALL, |build| {
         say(&format!("building wasm, {}", build.name()));
-        builder.make(build)?;
-    }
-    Ok(())
+    })
 }
 
 /// All builds, unless none of them is older than the sources: the quick way for tests.
@@ -212,8 +216,26 @@ impl Builder {
         Ok(Self { toolchain, bindgen })
     }
 
-    /// Compiles a build, and makes its module anew where the compiler wrote another.
-    pub fn make(&self, build: Build) -> Result<()> {
+    /// Makes these modules. While one is finished, which takes one core, the next is compiled.
+    pub fn make_all(&self, builds: &[Build], mut begin: impl FnMut(Build)) -> Result<()> {
+        thread::scope(|scope| {
+            let mut finishing: Option<thread::ScopedJoinHandle<Result<()>>> = None;
+            for &build in builds {
+                begin(build);
+                let compiled = self.compile(build)?;
+                if let Some(last) = finishing.take() {
+                    last.join().expect("no panic")?;
+                }
+                if let Some(part) = compiled {
+                    finishing = Some(scope.spawn(move || finish(build, &part)));
+                }
+            }
+            finishing.map_or(Ok(()), |last| last.join().expect("no panic"))
+        })
+    }
+
+    /// The module as wasm-bindgen leaves it, or nothing if the finished one is already made of what the compiler wrote.
+    fn compile(&self, build: Build) -> Result<Option<PathBuf>> {
         run(
             build
                 .cargo(&self.toolchain, "build")
@@ -228,13 +250,18 @@ impl Builder {
         let is_current = is_newer(&made, &[&wasm, &self.bindgen])
             && newest(&MAKERS.map(|path| root().join(path))) <= newest(std::slice::from_ref(&made));
         if is_current {
-            return touch(&made);
+            return touch(&made).map(|()| None);
         }
-        let part = build.target_dir().join("pkg");
+        let part = build.target_dir().join(format!("pkg-{}", build.name()));
         bind(&self.bindgen, &wasm, &part)?;
-        optimise(build, &part.join("pointweave_bg.wasm"))?;
-        replace(&part, made.parent().expect("a folder of pkg/wasm"))
+        Ok(Some(part))
     }
+}
+
+/// Optimises a module and moves it into place.
+fn finish(build: Build, part: &Path) -> Result<()> {
+    optimise(build, &part.join("pointweave_bg.wasm"))?;
+    replace(part, build.module().parent().expect("a folder of pkg/wasm"))
 }
 
 /// Where the sources of every build are.
@@ -301,7 +328,10 @@ fn optimise(build: Build, wasm: &Path) -> Result<()> {
     wasm_opt.arg("-O3").arg(wasm).arg("-o").arg(wasm);
     run(&mut wasm_opt, "wasm-opt failed; its error is above")?;
     let after = size(wasm);
-    say(&format!("wasm-opt: {before} kB to {after} kB"));
+    say(&format!(
+        "wasm-opt, {}: {before} kB to {after} kB",
+        build.name()
+    ));
     Ok(())
 }
 

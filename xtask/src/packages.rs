@@ -59,6 +59,11 @@ pub fn open3d() -> Result<PathBuf> {
     python("open3d", "Open3D")
 }
 
+/// A Python with libraries of other people's for the formats of scans.
+pub fn formats() -> Result<PathBuf> {
+    python("formats", "readers and writers of scans")
+}
+
 /// A Python with what tests/bench/`name`.txt lists, in a virtual environment in target/.
 fn python(name: &str, what: &str) -> Result<PathBuf> {
     let requirements = root().join(format!("tests/bench/{name}.txt"));

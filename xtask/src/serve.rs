@@ -12,8 +12,8 @@ use crate::shell::{Result, command, not_started, root, say};
 use crate::toolchain;
 use crate::tools;
 
-/// The builds that a page needs to show a scan. The others make it faster, or read and write more formats.
-const FIRST: [Build; 2] = [Build::Single, Build::Files];
+/// The builds that a page needs to show a scan, of a file or a sample. The others make it faster, or read and write more formats.
+const FIRST: [Build; 3] = [Build::Single, Build::Files, Build::Samples];
 
 /// Builds the package and the page, and serves the page until it is stopped.
 pub fn serve(port: u16) -> Result<()> {
@@ -36,10 +36,9 @@ pub fn serve(port: u16) -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;
     let (first, later) = plan.halves();
-    for &build in &first {
+    builder.make_all(&first, |build| {
         steps.begin(&format!("building wasm, {}", build.name()));
-        builder.make(build)?;
-    }
+    })?;
     steps.begin("building the page");
     page::build(&later)?;
     let mut server = start(port)?;
@@ -63,11 +62,13 @@ fn finish(builder: &Builder, later: &[Build], steps: &mut Steps) -> Result<()> {
     if later.is_empty() {
         return Ok(());
     }
-    for (i, &build) in later.iter().enumerate() {
-        note(&later[i..]);
+    let mut begun = 0;
+    builder.make_all(later, |build| {
+        // The one before is not finished yet.
+        note(&later[usize::saturating_sub(begun, 1)..]);
+        begun += 1;
         steps.begin(&format!("building wasm, {}", build.name()));
-        builder.make(build)?;
-    }
+    })?;
     steps.begin("building the page with all of it");
     page::build(&[])?;
     say(&format!(
@@ -228,7 +229,7 @@ mod tests {
             builds: Build::ALL.to_vec(),
         };
         let ((first, soon), (later, rest)) = bare.steps();
-        assert_eq!((first, later), (6, Build::ALL.len() - FIRST.len() + 1));
+        assert_eq!((first, later), (7, Build::ALL.len() - FIRST.len() + 1));
         assert!(soon > 0.0 && rest > 0.0);
     }
 

@@ -5,10 +5,12 @@
 
 #[macro_use]
 mod rows;
+mod given;
 
 use crate::base::error::Result;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+pub use given::Value;
 
 include!("table.rs");
 
@@ -26,32 +28,12 @@ impl Target {
     }
 }
 
-/// `reduce: false` in JS is `None` here.
-mod reduce_or_false {
-    use super::ReduceParams;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(untagged)]
-    enum OrFalse {
-        False(bool),
-        Params(Box<ReduceParams>),
-    }
-
-    pub fn serialize<S: Serializer>(value: &Option<ReduceParams>, s: S) -> Result<S::Ok, S::Error> {
-        match value {
-            None => s.serialize_bool(false),
-            Some(p) => p.serialize(s),
-        }
-    }
-
-    pub fn deserialize<'a, D: Deserializer<'a>>(d: D) -> Result<Option<ReduceParams>, D::Error> {
-        match OrFalse::deserialize(d)? {
-            OrFalse::False(false) => Ok(None),
-            OrFalse::False(true) => Err(D::Error::custom(
-                "reduce is true: expected false or an object",
-            )),
-            OrFalse::Params(p) => Ok(Some(*p)),
+/// `false` is `None` here.
+impl given::Given for Option<ReduceParams> {
+    fn given(value: &dyn Value) -> Option<Self> {
+        match value.switch() {
+            Some(reduce) => (!reduce).then_some(None),
+            None => ReduceParams::given(value).ok().map(Some),
         }
     }
 }

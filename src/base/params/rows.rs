@@ -77,6 +77,12 @@ fn camel_case(name: &str) -> String {
     camel
 }
 
+/// Whether `camel` is what JavaScript calls `name`.
+#[inline(never)]
+pub(super) fn is_camel_case(name: &str, camel: &str) -> bool {
+    camel_case(name) == camel
+}
+
 macro_rules! table {
     ($( $(#[$attr:meta])* $sort:ident $name:ident { $($rows:tt)* } )*) => {
         $( item! { $sort [$(#[$attr])*] $name { $($rows)* } } )*
@@ -86,9 +92,18 @@ macro_rules! table {
 macro_rules! item {
     (choice [$(#[$attr:meta])*] $name:ident { $( $(#[$doc:meta])* $variant:ident $word:literal $($label:literal)?, )* }) => {
         $(#[$attr])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum $name {
-            $( $(#[$doc])* #[serde(rename = $word)] $variant, )*
+            $( $(#[$doc])* $variant, )*
+        }
+
+        impl given::Given for $name {
+            fn given(value: &dyn Value) -> Option<Self> {
+                match &*value.word()? {
+                    $( $word => Some($name::$variant), )*
+                    _ => None,
+                }
+            }
         }
     };
     (auto [$(#[$attr:meta])*] $name:ident {
@@ -96,13 +111,11 @@ macro_rules! item {
         $(#[$doc:meta])* $number:ident,
     }) => {
         $(#[$attr])*
-        #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq)]
         pub enum $name {
             $(#[$auto_doc])*
-            #[serde(rename = $word)]
             Auto,
             $(#[$doc])*
-            #[serde(untagged)]
             $number(f64),
         }
 
@@ -114,19 +127,27 @@ macro_rules! item {
                 }
             }
         }
+
+        impl given::Given for $name {
+            fn given(value: &dyn Value) -> Option<Self> {
+                match value.number() {
+                    None => (value.word()? == $word).then_some($name::Auto),
+                    Some(number) => Some($name::$number(number)),
+                }
+            }
+        }
     };
     (amount [$(#[$attr:meta])*] $name:ident { $(
         $(#[$doc:meta])*
         $kind:ident $variant:ident: $ty:ty, $word:literal $(, $facet:ident($($fact:tt)*))*;
     )* }) => {
         $(#[$attr])*
-        #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq)]
         pub enum $name {
             $(
                 $(#[$doc])*
                 $( #[doc = fact!($facet $kind $($fact)*)] )*
-                #[serde(rename = $word)]
-                $variant($ty),
+                    $variant($ty),
             )*
         }
 
@@ -140,14 +161,26 @@ macro_rules! item {
                 Ok(())
             }
         }
+
+        impl given::Given for $name {
+            fn given(value: &dyn Value) -> Option<Self> {
+                let entries = value.entries()?;
+                let [(name, amount)] = &*entries else {
+                    return None;
+                };
+                match &**name {
+                    $( $word => given::Given::given(&**amount).map($name::$variant), )*
+                    _ => None,
+                }
+            }
+        }
     };
     (options [$(#[$attr:meta])*] $name:ident { $(
         $(#[$field_attr:meta])*
         $kind:ident $field:ident: $ty:ty = $default:expr $(, $facet:ident($($fact:tt)*))*;
     )* }) => {
         $(#[$attr])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-        #[serde(rename_all = "camelCase", default)]
+        #[derive(Debug, Clone, PartialEq)]
         pub struct $name {
             $(
                 $(#[$field_attr])*
@@ -164,6 +197,22 @@ macro_rules! item {
         }
 
         impl $name {
+            /// The options that an object of another language has, in camel case, over the defaults. Ranges are left to
+            /// [`Self::validate`].
+            ///
+            /// # Errors
+            /// [`Error::BadOption`](crate::Error::BadOption) for a value of another kind.
+            pub fn given(object: &dyn Value) -> Result<Self> {
+                let mut options = Self::default();
+                let entries = object.entries().ok_or_else(|| given::unknown("options"))?;
+                for (name, value) in entries {
+                    $( if rows::is_camel_case(stringify!($field), &name) {
+                        given::take(&name, &*value, &mut options.$field)?;
+                    } )*
+                }
+                Ok(options)
+            }
+
             /// Checks every range.
             pub fn validate(&self) -> Result<()> {
                 $(

@@ -175,6 +175,14 @@ table! {
         Open "open" "Leave open",
     }
 
+    /// What becomes of points through which there is no surface: foliage, dust, filled volumes.
+    choice Scatter {
+        /// The mesh has none of them. They stay in the reduced cloud, without a side, and the report's `scatter` counts them.
+        Drop "drop" "Leave out of the mesh",
+        /// They are points of the surface like all others.
+        Keep "keep" "Keep",
+    }
+
     /// Which inference chooses the signs of the local functions.
     choice Propagation {
         /// The signs of least energy over the whole graph, and every part by what is known of its outer side.
@@ -203,7 +211,6 @@ table! {
     /// Options of a reconstruction.
     options SurfaceParams {
         /// How the cloud is reduced first. Without a reduction every point goes to the fit, and attributes are means on the mesh.
-        #[serde(with = "reduce_or_false")]
         nested reduce: Option<ReduceParams> = Some(ReduceParams::default()), flag("fit every point");
         /// Largest rms residual of a sub-domain at its input points, a fraction of the diagonal. The default is the paper's.
         number accuracy: f64 = 6e-4, range(above 0 below 1), flag("residual that the fit has to reach, a share of the diagonal"),
@@ -231,6 +238,8 @@ table! {
         /// With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.
         number max_hole: MaxHole = MaxHole::Auto, range(auto or from 0 to 1),
             flag("widest hole that is closed, a share of the diagonal");
+        choice scatter: Scatter = Scatter::Drop, flag("what becomes of foliage, dust and filled volumes"),
+            field("Scatter", "Points through which there is no surface: foliage, dust.");
         /// Say of every input point and every vertex how far scan and mesh are apart there: `SurfaceMesh.distances`.
         switch distances: bool = false;
         /// Remember what was measured of this cloud, and its reduction: the next call with `keep` does not do again what would

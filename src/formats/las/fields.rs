@@ -1,30 +1,11 @@
 //! The fields of a point besides place and colour, and the extra bytes that a file describes.
 
 use super::super::input::Input;
+use super::super::las_names::{FIELDS, FLOAT};
 use ::las::raw::Point;
 use ::las::raw::point::{Flags, ScanAngle};
 
-/// Names of the fields, as ASPRS and laspy have them. The first two are always attributes, the others where one is not 0.
-pub(super) const FIELDS: [&str; 17] = [
-    "intensity",
-    "classification",
-    "nir",
-    "return_number",
-    "number_of_returns",
-    "scan_direction_flag",
-    "edge_of_flight_line",
-    "synthetic",
-    "key_point",
-    "withheld",
-    "overlap",
-    "scanner_channel",
-    "scan_angle",
-    "user_data",
-    "point_source_id",
-    "gps_time",
-    "wave_packet",
-];
-/// How many of them are always attributes.
+/// How many of [`FIELDS`] are always attributes; the others where one is not 0.
 pub(super) const ALWAYS: usize = 2;
 
 /// Values of [`FIELDS`]; the time counted from `start`.
@@ -182,16 +163,20 @@ fn described(content: &[u8], room: usize) -> Vec<Extra> {
     extras
 }
 
-/// A name that neither a field nor an extra value has.
+/// A name that neither a field nor an extra value has; that of a field where the bytes say that they stand in for it.
 fn free_name(name: String, extras: &[Extra]) -> String {
-    let first = if name.is_empty() {
-        "extra".into()
-    } else {
-        name
+    let own = name
+        .strip_suffix(FLOAT)
+        .filter(|name| FIELDS.contains(name));
+    let first = match own {
+        Some(field) => field.into(),
+        None if name.is_empty() => "extra".into(),
+        None => name.clone(),
     };
-    let mut free = first.clone();
+    let mut free: String = first.clone();
     let mut count = 1;
-    while FIELDS.contains(&free.as_str()) || extras.iter().any(|extra| extra.name == free) {
+    let is_field = |name: &str| FIELDS.contains(&name) && own != Some(name);
+    while is_field(&free) || extras.iter().any(|extra| extra.name == free) {
         count += 1;
         free = format!("{first}_{count}");
     }

@@ -2,11 +2,15 @@
 
 use super::super::colors::ColorRange;
 use super::super::input::Input;
+use super::super::las_names::FIELDS;
 use super::super::table::{Columns, Precision, Table};
-use super::fields::{self, ALWAYS, Extra, FIELDS};
+use super::fields::{self, ALWAYS, Extra};
 use crate::base::error::Result;
 use ::las::point::Format;
 use ::las::raw;
+
+/// Seconds. Times that start before are counted from 0 already: single precision holds them as well as those from the first point.
+const SHORT: f64 = 4096.0;
 
 /// The longest of the headers.
 pub(super) const HEADER: usize = 375;
@@ -18,6 +22,8 @@ pub(super) struct Header {
     pub(super) start: u64,
     pub(super) records_start: u64,
     pub(super) records: u32,
+    /// Byte of the first long record, behind the points, and how many of those there are said to be.
+    pub(super) long_records: Option<(u64, u32)>,
     /// Number of the point format, and its fields.
     pub(super) number: u8,
     pub(super) format: Format,
@@ -115,11 +121,16 @@ impl Header {
             records_start
         };
         let records = header.number_of_variable_length_records;
+        let long_records = header
+            .evlr
+            .map(|evlr| (evlr.start_of_first_evlr, evlr.number_of_evlrs))
+            .filter(|(start, count)| *count > 0 && *start < input.size);
         Ok(Header {
             points,
             start,
             records_start,
             records,
+            long_records,
             number,
             format,
             packed,
@@ -145,12 +156,16 @@ impl Header {
         let names = FIELDS.into_iter().chain(extras);
         let scalars = names.enumerate().map(|(i, name)| (6 + i, name.into()));
         // Those that are described are wanted even where all are 0.
-        let (fields, extras): (Vec<_>, Vec<_>) = scalars.partition(|(i, _)| *i < 6 + FIELDS.len());
-        let (always, optional) = fields.split_at(ALWAYS);
-        let mut scalars = always.to_vec();
+        let (mut fields, extras): (Vec<_>, Vec<_>) =
+            scalars.partition(|(i, _)| *i < 6 + FIELDS.len());
+        // Not those that extra bytes stand in for.
+        fields.retain(|(_, name): &(usize, String)| extras.iter().all(|(_, other)| other != name));
+        let (always, optional): (Vec<_>, Vec<_>) =
+            fields.into_iter().partition(|(i, _)| *i < 6 + ALWAYS);
+        let mut scalars = always;
         scalars.extend(extras);
         let optional_from = scalars.len();
-        scalars.extend(optional.iter().cloned());
+        scalars.extend(optional);
         Columns {
             color: self.format.has_color.then_some([3, 4, 5]),
             scalars,
@@ -176,7 +191,8 @@ impl Header {
         let [x, y, z] = [point.x, point.y, point.z].map(f64::from);
         let color = point.color.unwrap_or_default();
         if start.is_none() {
-            *start = point.gps_time.filter(|time| time.is_finite());
+            let first = point.gps_time.filter(|time| time.is_finite());
+            *start = first.map(|time| if time.abs() < SHORT { 0.0 } else { time });
         }
         table.colors_said |= [color.red, color.green, color.blue] != [0; 3];
         row.clear();

@@ -5,6 +5,7 @@
 
 use super::super::input::Input;
 use super::header::Header;
+use super::layered::LayeredTimes;
 use super::time::Times;
 use crate::base::error::{Error, Result};
 use laz::las::{v1, v2};
@@ -183,9 +184,16 @@ impl Laz {
     ) -> std::result::Result<usize, laz::LasZipError> {
         let mut record = vec![0; self.record];
         let source = Cursor::new(chunk);
+        let mut times = match self.layout {
+            Layout::Layered => LayeredTimes::open(chunk, self.record, layers(&self.vlr))?,
+            _ => None,
+        };
         let mut all = |records: &mut dyn RecordDecompressor<Cursor<&[u8]>>| {
-            for _ in 0..points {
+            for i in 0..points {
                 records.decompress_next(&mut record)?;
+                if let Some(times) = times.as_mut().filter(|_| i > 0) {
+                    times.next(&mut record)?;
+                }
                 push(&record);
             }
             Ok::<(), laz::LasZipError>(())
@@ -193,7 +201,7 @@ impl Laz {
         if self.layout == Layout::Layered {
             let mut records = LayeredPointRecordDecompressor::new(source);
             records.set_fields_from(self.vlr.items())?;
-            // Of the layers those that are used. Not times above all, at which damaged data overflow the stack: see `Times`.
+            // Of the layers those that are used; times are decoded here.
             records.set_selection(
                 DecompressionSelection::xy_returns_channel()
                     .decompress_z()
@@ -218,6 +226,17 @@ impl Laz {
             Ok(records.get().position() as usize)
         }
     }
+}
+
+/// How many layers a chunk has.
+fn layers(vlr: &LazVlr) -> usize {
+    let of = |item: &LazItem| match item.item_type() {
+        LazItemType::Point14 => 9,
+        LazItemType::RGBNIR14 => 2,
+        LazItemType::Byte14(bytes) => usize::from(bytes),
+        _ => 1,
+    };
+    vlr.items().iter().map(of).sum()
 }
 
 /// As the crate does it, but for the times of version 2.
@@ -313,16 +332,7 @@ fn layered_points(chunk: &[u8], record: usize, vlr: &LazVlr) -> std::result::Res
             .first_chunk()
             .map(|bytes| u64::from(u32::from_le_bytes(*bytes)))
     };
-    let layers: usize = vlr
-        .items()
-        .iter()
-        .map(|item| match item.item_type() {
-            LazItemType::Point14 => 9,
-            LazItemType::RGBNIR14 => 2,
-            LazItemType::Byte14(bytes) => usize::from(bytes),
-            _ => 1,
-        })
-        .sum();
+    let layers = layers(vlr);
     let short = || format!("{} bytes", chunk.len());
     let points = number(record).ok_or_else(short)?;
     let sizes: Option<u64> = (0..layers)

@@ -1,4 +1,4 @@
-//! GPS times in chunks of LASzip 2.
+//! GPS times in chunks of LASzip 2, and in the layers of LASzip 3 and 4, which have no code for "the same again".
 //!
 //! The decoder of the crate `laz` (0.13.0), as LASzip's own, calls itself whenever the stream switches to another of four
 //! sequences of times. What a writer makes switches once a point; what was damaged may switch a million times, and overflow
@@ -32,6 +32,8 @@ struct Sequence {
 
 /// Decodes the times.
 pub(super) struct Times {
+    /// In a layer, to which only times that change go.
+    layered: bool,
     multiple: ArithmeticModel,
     after_zero: ArithmeticModel,
     integers: IntegerDecompressor,
@@ -42,9 +44,17 @@ pub(super) struct Times {
 
 impl Default for Times {
     fn default() -> Self {
+        Times::new(false)
+    }
+}
+
+impl Times {
+    fn new(layered: bool) -> Times {
+        let fewer = u32::from(layered);
         Times {
-            multiple: ArithmeticModelBuilder::new(CODES).build(),
-            after_zero: ArithmeticModelBuilder::new(6).build(),
+            layered,
+            multiple: ArithmeticModelBuilder::new(CODES - fewer).build(),
+            after_zero: ArithmeticModelBuilder::new(6 - fewer).build(),
             integers: IntegerDecompressorBuilder::new()
                 .bits(32)
                 .contexts(9)
@@ -53,6 +63,37 @@ impl Default for Times {
             last: 0,
             next: 0,
         }
+    }
+
+    /// Of a layer, after a point with this time's bits.
+    pub(super) fn layered(time: i64) -> Times {
+        let mut times = Times::new(true);
+        times.sequences[0].time = time;
+        times
+    }
+
+    /// The last time's bits.
+    pub(super) fn now(&self) -> i64 {
+        self.sequences[self.last].time
+    }
+
+    /// Goes on to the next time.
+    pub(super) fn next<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> Result<()> {
+        for _ in 0..=self.sequences.len() {
+            let switch = if self.sequences[self.last].difference == 0 {
+                self.after_zero(decoder)?
+            } else {
+                self.after_difference(decoder)?
+            };
+            match switch {
+                Some(by) => self.last = (self.last + by) & 3,
+                None => return Ok(()),
+            }
+        }
+        Err(Error::new(
+            ErrorKind::InvalidData,
+            "times that switch on and on",
+        ))
     }
 }
 
@@ -74,24 +115,9 @@ impl<R: Read> FieldDecompressor<R> for Times {
         decoder: &mut ArithmeticDecoder<R>,
         field: &mut [u8],
     ) -> Result<()> {
-        for _ in 0..=self.sequences.len() {
-            let switch = if self.sequences[self.last].difference == 0 {
-                self.after_zero(decoder)?
-            } else {
-                self.after_difference(decoder)?
-            };
-            match switch {
-                Some(by) => self.last = (self.last + by) & 3,
-                None => {
-                    self.keep(field);
-                    return Ok(());
-                }
-            }
-        }
-        Err(Error::new(
-            ErrorKind::InvalidData,
-            "times that switch on and on",
-        ))
+        self.next(decoder)?;
+        self.keep(field);
+        Ok(())
     }
 }
 
@@ -99,13 +125,13 @@ impl Times {
     /// Puts the time into the field's bytes.
     fn keep(&self, field: &mut [u8]) {
         if let Some(field) = field.first_chunk_mut() {
-            *field = self.sequences[self.last].time.to_le_bytes();
+            *field = self.now().to_le_bytes();
         }
     }
 
     /// A time after one that was the same as that before; or by how many sequences to switch.
     fn after_zero<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> Result<Option<usize>> {
-        match decoder.decode_symbol(&mut self.after_zero)? {
+        match decoder.decode_symbol(&mut self.after_zero)? + u32::from(self.layered) {
             0 => {}
             1 => {
                 let difference = self.integers.decompress(decoder, 0, 0)?;
@@ -124,7 +150,10 @@ impl Times {
         &mut self,
         decoder: &mut ArithmeticDecoder<R>,
     ) -> Result<Option<usize>> {
-        let code = decoder.decode_symbol(&mut self.multiple)? as i32;
+        let mut code = decoder.decode_symbol(&mut self.multiple)? as i32;
+        if self.layered && code >= UNCHANGED {
+            code += 1;
+        }
         if code > FULL {
             return Ok(Some((code - FULL) as usize));
         }
@@ -186,9 +215,11 @@ mod tests {
         let ones = vec![0xff; 1 << 16];
         let mut decoder = ArithmeticDecoder::new(&ones[..]);
         decoder.read_init_bytes().unwrap();
-        let error = Times::default()
-            .decompress_with(&mut decoder, &mut [0; 8])
-            .unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::InvalidData, "{error}");
+        for mut times in [Times::default(), Times::layered(0)] {
+            let error = times
+                .decompress_with(&mut decoder, &mut [0; 8])
+                .unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::InvalidData, "{error}");
+        }
     }
 }

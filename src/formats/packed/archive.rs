@@ -1,10 +1,13 @@
 //! ZIP and gzip archives: what is in them, and each part unpacked.
 //!
 //! Read are stored and deflated parts, of ZIP64, too. Encrypted ones and other methods are refused. A part that would unpack to more than
-//! deflate can, or than its entry says, is damaged.
+//! deflate can, or than its entry says, is damaged. The members of a gzip file, of which some programs write one a block, are one
+//! content.
 
 use crate::base::error::{Error, Result};
-use miniz_oxide::inflate::decompress_to_vec_with_limit;
+use miniz_oxide::inflate::TINFLStatus;
+use miniz_oxide::inflate::core::{DecompressorOxide, decompress, inflate_flags};
+use std::borrow::Cow;
 
 /// Deflate packs no more bytes into one.
 const MOST_A_BYTE: usize = 1032;
@@ -25,7 +28,7 @@ pub struct Entry {
 
 /// An archive that is wholly in memory.
 pub struct Archive<'a> {
-    bytes: &'a [u8],
+    bytes: Cow<'a, [u8]>,
     format: &'static str,
     /// What is in it.
     pub entries: Vec<Entry>,
@@ -41,10 +44,10 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// [`Error::BadFile`] with the byte.
-    pub fn open(bytes: &'a [u8], name: Option<&str>) -> Result<Archive<'a>> {
+    pub fn open(bytes: impl Into<Cow<'a, [u8]>>, name: Option<&str>) -> Result<Archive<'a>> {
+        let bytes = bytes.into();
         if bytes.starts_with(GZIP) {
-            let start = gzip_start(bytes)
-                .ok_or_else(|| bad("gzip", 0, "the head of a gzip file", "the end of the file"))?;
+            let start = gzip_start(&bytes).ok_or_else(|| bad("gzip", 0, HEAD, END))?;
             let name = name.unwrap_or_default();
             let entry = Entry {
                 name: name.strip_suffix(".gz").unwrap_or(name).into(),
@@ -60,10 +63,11 @@ impl<'a> Archive<'a> {
                 entries: vec![entry],
             });
         }
+        let entries = directory(&bytes)?;
         Ok(Archive {
             bytes,
             format: "ZIP",
-            entries: directory(bytes)?,
+            entries,
         })
     }
 
@@ -94,15 +98,22 @@ impl<'a> Archive<'a> {
                     .saturating_mul(MOST_A_BYTE)
                     .saturating_add(1 << 10);
                 let limit = entry.size.map_or(most, |size| (size as usize).min(most));
-                let content = decompress_to_vec_with_limit(packed, limit);
-                content.map_err(|error| {
-                    bad(
-                        self.format,
-                        at,
-                        "deflated content",
-                        format!("{} does not unpack: {error}", entry.name),
-                    )
-                })
+                let mut content = Vec::new();
+                let mut next = 0;
+                loop {
+                    next += inflate(&packed[next..], limit, &mut content).map_err(|status| {
+                        let found = format!("{} does not unpack: {status:?}", entry.name);
+                        bad(self.format, at + next as u64, "deflated content", found)
+                    })?;
+                    // Behind the content of a gzip member are its checksum and size, and perhaps another.
+                    let after = next.saturating_add(GZIP_TRAILER).min(packed.len());
+                    if self.format != "gzip" || !packed[after..].starts_with(GZIP) {
+                        return Ok(content);
+                    }
+                    next = after
+                        + gzip_start(&packed[after..])
+                            .ok_or_else(|| bad("gzip", at + after as u64, HEAD, END))?;
+                }
             }
             method => Err(unsupported(format!(
                 "{} is packed by method {method}",
@@ -113,6 +124,10 @@ impl<'a> Archive<'a> {
 }
 
 const GZIP: &[u8] = b"\x1f\x8b";
+/// Bytes behind the content of a gzip member.
+const GZIP_TRAILER: usize = 8;
+const HEAD: &str = "the head of a gzip file";
+const END: &str = "the end of the file";
 const STORED: u16 = 0;
 const DEFLATED: u16 = 8;
 
@@ -123,6 +138,33 @@ fn bad(format: &'static str, at: u64, expected: &str, found: impl Into<String>) 
         at,
         expected: expected.into(),
         found: found.into(),
+    }
+}
+
+/// Unpacks deflated bytes behind `content`, up to `limit` bytes in all; how many packed bytes those were.
+fn inflate(
+    packed: &[u8],
+    limit: usize,
+    content: &mut Vec<u8>,
+) -> std::result::Result<usize, TINFLStatus> {
+    let flags = inflate_flags::TINFL_FLAG_USING_NON_WRAPPING_OUTPUT_BUF;
+    let mut state = Box::<DecompressorOxide>::default();
+    let (mut from, mut filled) = (0, content.len());
+    loop {
+        // Room for twice the packed bytes, then twice as much.
+        let room = (filled + packed.len()).max(1 << 10).saturating_mul(2);
+        content.resize(room.min(limit).max(filled), 0);
+        let (status, taken, given) =
+            decompress(&mut state, &packed[from..], content, filled, flags);
+        (from, filled) = (from + taken, filled + given);
+        match status {
+            TINFLStatus::Done => {
+                content.truncate(filled);
+                return Ok(from);
+            }
+            TINFLStatus::HasMoreOutput if content.len() < limit => {}
+            _ => return Err(status),
+        }
     }
 }
 
@@ -167,13 +209,13 @@ fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
 
 /// The entries of a ZIP file, by the directory at its end.
 fn directory(bytes: &[u8]) -> Result<Vec<Entry>> {
-    const END: &[u8] = b"PK\x05\x06";
+    const MARK: &[u8] = b"PK\x05\x06";
     const END_SIZE: usize = 22;
     let none = || bad("ZIP", bytes.len() as u64, "a directory at the end", "none");
     let from = bytes.len().saturating_sub(END_SIZE + usize::from(u16::MAX));
     let end = bytes[from..]
-        .windows(END.len())
-        .rposition(|window| window == END)
+        .windows(MARK.len())
+        .rposition(|window| window == MARK)
         .map(|at| from + at)
         .ok_or_else(none)?;
     let (count, start) = (u16_at(bytes, end + 10), u32_at(bytes, end + 16));

@@ -25,7 +25,7 @@ pub(super) struct Field {
     pub(super) count: usize,
 }
 
-/// The columns of the rows that [`Body::push`] makes: a value for each field, then red, green, blue where one packs them.
+/// The columns of the rows that `Body::push` makes: a value for each field, then red, green, blue where one packs them.
 pub(super) fn columns(fields: &[Field], encoding: Encoding) -> Option<Columns> {
     // Fields with several values and padding have names of no meaning, and no attribute is made of them.
     let name = |(i, field): (usize, &Field)| {

@@ -10,6 +10,7 @@
 //!   of its own scales them back, so that the origin's stays exact.
 
 use super::local::Local;
+use super::values::linear;
 use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
 use crate::formats::raw_cloud::RawCloud;
@@ -219,7 +220,8 @@ impl File {
     }
 
     fn colors(&mut self, colors: &[u8]) -> usize {
-        let linear: Vec<u16> = (0..=u8::MAX).map(linear).collect();
+        let short = |c| (linear(c) * f64::from(u16::MAX)).round() as u16;
+        let linear: Vec<u16> = (0..=u8::MAX).map(short).collect();
         let of = |c: &[u8]| {
             let [r, g, b] = [0, 1, 2].map(|k| linear[usize::from(c[k])]);
             [r, g, b, u16::MAX]
@@ -288,7 +290,7 @@ impl File {
 const NORMALIZED: &str = ",\"normalized\":true";
 
 /// Lowest and highest coordinates.
-fn bounds(positions: &[f32]) -> [[f32; 3]; 2] {
+pub(super) fn bounds(positions: &[f32]) -> [[f32; 3]; 2] {
     let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in positions.chunks_exact(3) {
         for axis in 0..3 {
@@ -300,7 +302,7 @@ fn bounds(positions: &[f32]) -> [[f32; 3]; 2] {
 }
 
 /// The normals, those that are not of unit length made so; `None` without any, or where one is zero.
-fn unit_normals(cloud: &RawCloud) -> Result<Option<Vec<f32>>> {
+pub(super) fn unit_normals(cloud: &RawCloud) -> Result<Option<Vec<f32>>> {
     const ROUNDING: f32 = 1e-5;
     let Some(normals) = &cloud.normals else {
         return Ok(None);
@@ -320,17 +322,6 @@ fn unit_normals(cloud: &RawCloud) -> Result<Option<Vec<f32>>> {
         unit.extend_from_slice(&n.to_array());
     }
     Ok(Some(unit))
-}
-
-/// An sRGB component as a linear short (IEC 61966-2-1).
-fn linear(component: u8) -> u16 {
-    let x = f64::from(component) / 255.0;
-    let linear = if x <= 0.04045 {
-        x / 12.92
-    } else {
-        libm::pow((x + 0.055) / 1.055, 2.4)
-    };
-    (linear * f64::from(u16::MAX)).round() as u16
 }
 
 /// `_NAME` for each attribute: upper case letters, digits and underscores, which need no escapes; no name twice.
@@ -354,7 +345,7 @@ fn names(attributes: &[Attribute]) -> Vec<String> {
     names
 }
 
-fn check_finite(array: &str, values: &[f32], each: usize) -> Result<()> {
+pub(super) fn check_finite(array: &str, values: &[f32], each: usize) -> Result<()> {
     match values.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
         Some(i) => Err(Error::NonFinite {

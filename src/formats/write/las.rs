@@ -1,19 +1,21 @@
 //! LAS 1.4 and LAZ by the crate `las`, point formats 6 to 8: world coordinates in steps of a power of ten finer than 2⁻²³ of the
 //! diagonal; colours of 16 bits; attributes in the fields of their names where those hold their values, and else, with the
-//! normals, as extra bytes in single precision; the reference system as the file had it that the cloud was read from.
+//! normals, as extra bytes in single precision, `NAME (float)` where a field has their name; the reference system as the file had
+//! it that the cloud was read from.
 
 use super::values::world;
 use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Crs};
+use crate::formats::las_names::{FIELDS, FLOAT};
 use crate::formats::raw_cloud::RawCloud;
-use ::las::point::{Classification, Format, Point};
+use ::las::point::{Classification, Format, Point, ScanDirection};
 use ::las::{Builder, Color, Transform, Vector, Vlr, Writer, raw};
 use std::io::Cursor;
 
 /// Writes points, `packed` by LASzip.
 ///
 /// # Errors
-/// [`Error::EmptyCloud`]; [`Error::NonFinite`].
+/// [`Error::EmptyCloud`]; [`Error::NonFinite`]; [`Error::BadLength`] for more extra bytes than a file describes.
 pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
     let points = cloud.points();
     if points == 0 {
@@ -22,6 +24,13 @@ pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
     let (fields, extra): (Vec<_>, Vec<_>) = columns(cloud)
         .into_iter()
         .partition(|column| column.field.is_some());
+    if extra.len() > MOST_EXTRA {
+        return Err(Error::BadLength {
+            array: "attributes".into(),
+            expected: format!("at most {MOST_EXTRA} that are no fields of LAS"),
+            found: extra.len(),
+        });
+    }
     let mut format = Format::new(6).map_err(internal)?;
     format.has_nir = fields.iter().any(|column| column.field == Some(Field::Nir));
     format.has_color = cloud.colors.is_some() || format.has_nir;
@@ -43,11 +52,9 @@ pub(super) fn write(cloud: &RawCloud, packed: bool) -> Result<Vec<u8>> {
         builder.vlrs.extend(records(crs));
     }
     if !extra.is_empty() {
-        builder.vlrs.push(record(
-            "LASF_Spec",
-            4,
-            extra.iter().flat_map(description).collect(),
-        ));
+        builder
+            .vlrs
+            .push(record("LASF_Spec", 4, descriptions(&extra)));
     }
     let header = builder.into_header().map_err(internal)?;
     let mut writer = Writer::new(Cursor::new(Vec::new()), header).map_err(internal)?;
@@ -82,6 +89,9 @@ fn internal(error: ::las::Error) -> Error {
     Error::Internal(format!("LAS: {error}"))
 }
 
+/// Descriptions of 192 bytes that a variable length record holds.
+const MOST_EXTRA: usize = u16::MAX as usize / 192;
+
 /// A field of a point that an attribute may have.
 #[derive(Clone, Copy, PartialEq)]
 enum Field {
@@ -92,22 +102,58 @@ enum Field {
     UserData,
     Source,
     Nir,
+    Angle,
+    Time,
+    Direction,
+    EdgeOfLine,
+    Synthetic,
+    KeyPoint,
+    Withheld,
+    Overlap,
+    Channel,
 }
 
+/// Degrees of a step of the scan angle.
+const ANGLE_STEP: f32 = 0.006;
+
 impl Field {
-    /// The field of a name, whatever its spelling, and the most that it holds.
-    fn named(name: &str) -> Option<(Field, f32)> {
+    /// The field of a name, whatever its spelling.
+    fn named(name: &str) -> Option<Field> {
         let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
         Some(match plain.to_ascii_lowercase().as_str() {
-            "intensity" => (Field::Intensity, 65_535.0),
-            "returnnumber" => (Field::Return, 15.0),
-            "numberofreturns" => (Field::Returns, 15.0),
-            "classification" => (Field::Class, 255.0),
-            "userdata" => (Field::UserData, 255.0),
-            "pointsourceid" => (Field::Source, 65_535.0),
-            "nir" => (Field::Nir, 65_535.0),
+            "intensity" => Field::Intensity,
+            "returnnumber" => Field::Return,
+            "numberofreturns" => Field::Returns,
+            "classification" => Field::Class,
+            "userdata" => Field::UserData,
+            "pointsourceid" => Field::Source,
+            "nir" => Field::Nir,
+            "scanangle" => Field::Angle,
+            "gpstime" => Field::Time,
+            "scandirectionflag" => Field::Direction,
+            "edgeofflightline" => Field::EdgeOfLine,
+            "synthetic" => Field::Synthetic,
+            "keypoint" => Field::KeyPoint,
+            "withheld" => Field::Withheld,
+            "overlap" => Field::Overlap,
+            "scannerchannel" => Field::Channel,
             _ => return None,
         })
+    }
+
+    /// Whether it holds the values. Of integers: rounding a mean of large ones loses nothing, shares of 1 would be lost.
+    fn holds(self, values: &[f32]) -> bool {
+        let most = match self {
+            Field::Intensity | Field::Source | Field::Nir => 65_535.0,
+            Field::Class | Field::UserData => 255.0,
+            Field::Return | Field::Returns => 15.0,
+            Field::Channel => 3.0,
+            Field::Angle => return values.iter().all(|x| x.abs() <= 180.0),
+            Field::Time => return values.iter().all(|x| x.is_finite()),
+            _ => 1.0,
+        };
+        let within = values.iter().all(|x| (0.0..=most).contains(x));
+        within && (values.iter().all(|x| x.fract() == 0.0) || values.iter().any(|&x| x > 255.0))
     }
 
     fn set(self, point: &mut Point, value: f32) {
@@ -119,12 +165,26 @@ impl Field {
             // The class of overlaps has a flag of its own in the crate's eyes.
             Field::Class => {
                 let class = Classification::new(whole as u8);
-                point.is_overlap = class.is_err();
+                point.is_overlap |= class.is_err();
                 point.classification = class.unwrap_or(Classification::Unclassified);
             }
             Field::UserData => point.user_data = whole as u8,
             Field::Source => point.point_source_id = whole,
             Field::Nir => point.nir = Some(whole),
+            // The crate cuts off what is no whole step.
+            Field::Angle => {
+                let steps = (value / ANGLE_STEP).round();
+                point.scan_angle = (steps + 0.25 * steps.signum()) * ANGLE_STEP;
+            }
+            Field::Time => point.gps_time = Some(f64::from(value)),
+            Field::Direction if value == 1.0 => point.scan_direction = ScanDirection::LeftToRight,
+            Field::Direction => point.scan_direction = ScanDirection::RightToLeft,
+            Field::EdgeOfLine => point.is_edge_of_flight_line = value == 1.0,
+            Field::Synthetic => point.is_synthetic = value == 1.0,
+            Field::KeyPoint => point.is_key_point = value == 1.0,
+            Field::Withheld => point.is_withheld = value == 1.0,
+            Field::Overlap => point.is_overlap |= value == 1.0,
+            Field::Channel => point.scanner_channel = whole as u8,
         }
     }
 }
@@ -147,15 +207,15 @@ impl Column<'_> {
 fn columns<'a>(cloud: &'a RawCloud) -> Vec<Column<'a>> {
     let mut taken: Vec<Field> = Vec::new();
     let attribute = |Attribute { name, values }: &'a Attribute| {
-        let field = Field::named(name)
-            .filter(|(field, most)| holds(values, *most) && !taken.contains(field));
-        taken.extend(field.map(|(field, _)| field));
+        let field =
+            Field::named(name).filter(|field| field.holds(values) && !taken.contains(field));
+        taken.extend(field);
         Column {
             name: name.clone(),
             values,
             stride: 1,
             start: 0,
-            field: field.map(|(field, _)| field),
+            field,
         }
     };
     let mut columns: Vec<Column> = cloud.attributes.iter().map(attribute).collect();
@@ -175,12 +235,6 @@ fn columns<'a>(cloud: &'a RawCloud) -> Vec<Column<'a>> {
         );
     }
     columns
-}
-
-/// Whether integers up to `most` hold the values: rounding a mean of large ones loses nothing, shares of 1 would be lost.
-fn holds(values: &[f32], most: f32) -> bool {
-    let within = values.iter().all(|x| (0.0..=most).contains(x));
-    within && (values.iter().all(|x| x.fract() == 0.0) || values.iter().any(|&x| x > 255.0))
 }
 
 /// Steps and offset of each axis.
@@ -245,17 +299,55 @@ fn color(cloud: &RawCloud, i: usize) -> Color {
     }
 }
 
-/// The 192 bytes that describe a column of extra bytes: single precision, and its name.
-fn description(column: &Column) -> [u8; 192] {
-    const FLOAT: u8 = 9;
-    let mut bytes = [0; 192];
-    bytes[2] = FLOAT;
-    let mut end = column.name.len().min(32);
-    while !column.name.is_char_boundary(end) {
-        end -= 1;
+/// The 192 bytes that describe each column of extra bytes: single precision, and its name.
+fn descriptions(extra: &[Column]) -> Vec<u8> {
+    const KIND_OF_FLOATS: u8 = 9;
+    let mut names: Vec<String> = Vec::new();
+    let mut all = Vec::with_capacity(192 * extra.len());
+    for column in extra {
+        let name = free_name(&column.name, &names);
+        let mut bytes = [0; 192];
+        bytes[2] = KIND_OF_FLOATS;
+        bytes[4..4 + name.len()].copy_from_slice(name.as_bytes());
+        all.extend(bytes);
+        names.push(name);
     }
-    bytes[4..4 + end].copy_from_slice(&column.name.as_bytes()[..end]);
-    bytes
+    all
+}
+
+/// A name of at most 32 bytes that neither a field nor another column has: readers refuse a name that comes twice.
+fn free_name(name: &str, others: &[String]) -> String {
+    const ROOM: usize = 32;
+    /// What readers call the parts of a point besides [`FIELDS`].
+    const PARTS: [&str; 12] = [
+        "X",
+        "Y",
+        "Z",
+        "x",
+        "y",
+        "z",
+        "red",
+        "green",
+        "blue",
+        "bit_fields",
+        "raw_classification",
+        "classification_flags",
+    ];
+    let cut = |end: &str| {
+        let mut length = name.len().min(ROOM - end.len());
+        while !name.is_char_boundary(length) {
+            length -= 1;
+        }
+        format!("{}{end}", &name[..length])
+    };
+    let is_field = FIELDS.contains(&name) || PARTS.contains(&name);
+    let mut free = cut(if is_field { FLOAT } else { "" });
+    let mut count = 1;
+    while free.is_empty() || others.contains(&free) {
+        count += 1;
+        free = cut(&format!(" {count}"));
+    }
+    free
 }
 
 fn records(crs: &Crs) -> Vec<Vlr> {

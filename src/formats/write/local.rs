@@ -1,4 +1,4 @@
-//! World coordinates as an origin in double precision and what is left in single.
+//! Splits world coordinates into an origin in double precision and offsets from it in single precision.
 
 use crate::base::error::{Error, Result};
 use crate::formats::raw_cloud::{Positions, RawCloud};

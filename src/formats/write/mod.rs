@@ -13,6 +13,8 @@ mod stand;
 mod stl;
 #[cfg(feature = "exports")]
 mod threemf;
+#[cfg(feature = "exports")]
+mod usdz;
 mod values;
 mod xyz;
 #[cfg(feature = "exports")]
@@ -48,6 +50,9 @@ pub enum Output {
     /// 3MF: triangles and colours.
     #[cfg(feature = "exports")]
     ThreeMf,
+    /// USDZ: everything, single precision around an origin in double precision.
+    #[cfg(feature = "exports")]
+    Usdz,
 }
 
 impl Output {
@@ -66,6 +71,8 @@ impl Output {
         Output::Laz,
         #[cfg(feature = "exports")]
         Output::ThreeMf,
+        #[cfg(feature = "exports")]
+        Output::Usdz,
     ];
 
     /// Lower-case name, as `format` in the JS interface and as the extension of files.
@@ -84,6 +91,8 @@ impl Output {
             Output::Laz => "laz",
             #[cfg(feature = "exports")]
             Output::ThreeMf => "3mf",
+            #[cfg(feature = "exports")]
+            Output::Usdz => "usdz",
         }
     }
 
@@ -97,6 +106,8 @@ impl Output {
     pub fn up(self) -> Option<[f64; 3]> {
         match self {
             Output::Glb => Some([0.0, 1.0, 0.0]),
+            #[cfg(feature = "exports")]
+            Output::Usdz => Some([0.0, 1.0, 0.0]),
             Output::Stl => Some([0.0, 0.0, 1.0]),
             #[cfg(feature = "exports")]
             Output::Las | Output::Laz | Output::ThreeMf => Some([0.0, 0.0, 1.0]),
@@ -108,6 +119,8 @@ impl Output {
     pub fn unit(self) -> Option<Unit> {
         match self {
             Output::Glb => Some(Unit::Metre),
+            #[cfg(feature = "exports")]
+            Output::Usdz => Some(Unit::Metre),
             Output::Stl => Some(Unit::Millimetre),
             #[cfg(feature = "exports")]
             Output::ThreeMf => Some(Unit::Millimetre),
@@ -135,7 +148,7 @@ pub struct WriteOptions {
 /// # Errors
 /// [`Error::BadLength`] where an array does not have one entry a point, or the triangles' length is no multiple of 3;
 /// [`Error::BadIndex`] for a corner that is no point; [`Error::NeedsTriangles`] for an STL file without triangles;
-/// [`Error::NonFinite`] where the format cannot hold such a number (GLB and STL); [`Error::BadOption`] where the options ask for
+/// [`Error::NonFinite`] where the format cannot hold such a number (GLB, STL, USDZ); [`Error::BadOption`] where the options ask for
 /// another up or unit and the cloud does not say its own.
 pub fn write(
     cloud: &RawCloud,
@@ -164,6 +177,8 @@ pub fn write(
         Output::Las | Output::Laz => las::write(cloud, format == Output::Laz),
         #[cfg(feature = "exports")]
         Output::ThreeMf => threemf::write(cloud, triangles.ok_or(Error::NeedsTriangles)?),
+        #[cfg(feature = "exports")]
+        Output::Usdz => usdz::write(cloud, triangles),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Another side up, another unit: what a file's format asks for, or the caller.
+//! Turns and scales a cloud to the up axis and the unit that the format or the caller asks for.
 
 use crate::base::error::{Error, Result};
 use crate::cloud::{Unit, Viewpoints};

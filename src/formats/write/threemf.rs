@@ -2,7 +2,7 @@
 //! item, in double precision. Points alone have no place in it.
 
 use super::local::Local;
-use super::zip::archive;
+use super::zip::{Packing, archive};
 use crate::base::error::{Error, Result};
 use crate::cloud::Unit;
 use crate::formats::raw_cloud::RawCloud;
@@ -77,11 +77,12 @@ pub(super) fn write(cloud: &RawCloud, triangles: &[u32]) -> Result<Vec<u8>> {
         let _ = write!(model, " transform=\"1 0 0 0 1 0 0 0 1 {x} {y} {z}\"");
     }
     model += "/></build>\n</model>\n";
-    Ok(archive(&[
+    let files: [(&str, &[u8]); 3] = [
         ("[Content_Types].xml", TYPES.as_bytes()),
         ("_rels/.rels", RELATIONS.as_bytes()),
         ("3D/3dmodel.model", model.as_bytes()),
-    ]))
+    ];
+    Ok(archive(&files, Packing::Deflated))
 }
 
 /// The different colours, in order, and which each vertex has.

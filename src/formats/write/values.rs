@@ -1,4 +1,4 @@
-//! Values of single points.
+//! The values of one point of a cloud, as writers take them.
 
 use crate::formats::raw_cloud::{Positions, RawCloud};
 
@@ -18,4 +18,14 @@ pub(super) fn triple<T>(array: &Option<Vec<T>>, i: usize) -> &[T] {
     array
         .as_ref()
         .map_or(&[], |values| &values[3 * i..3 * i + 3])
+}
+
+/// An sRGB component in linear light, 0 to 1 (IEC 61966-2-1).
+pub(super) fn linear(component: u8) -> f64 {
+    let x = f64::from(component) / 255.0;
+    if x <= 0.04045 {
+        x / 12.92
+    } else {
+        libm::pow((x + 0.055) / 1.055, 2.4)
+    }
 }

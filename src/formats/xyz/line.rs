@@ -1,4 +1,4 @@
-//! What a line of a table of text is.
+//! Tells what kind a line of a table is: blank or comment, count, row, other.
 
 use super::super::text::quote;
 use super::dialect::{Dialect, Value};

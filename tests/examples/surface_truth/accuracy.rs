@@ -10,13 +10,13 @@ const MOST_TRIANGLES: f64 = 3.0;
 
 pub fn run() {
     println!(
-        "\nACCURACY: mean and rms distance of the mesh to the truth, mean and greatest of the truth to the mesh, in 1e-4 of"
+        "\nACCURACY: mean and rms distance of the mesh to the truth, mean and greatest of the truth to the mesh, what 99 % of both are within, in 1e-4 of"
     );
     println!(
         "the diagonal; t/p: triangles a fitted point, {MOST_TRIANGLES} at most; shares of triangles with a least angle under 5, 15, 30 degrees"
     );
     println!(
-        "{:<24} {:>6} {:>6} {:>5} {:>6} {:>6} {:>7} {:>8} {:>5} {:>5} {:>5} {:>5} {:>6}",
+        "{:<24} {:>6} {:>6} {:>5} {:>6} {:>6} {:>7} {:>8} {:>6} {:>5} {:>5} {:>5} {:>5} {:>6}",
         "cloud",
         "points",
         "noise%",
@@ -25,6 +25,7 @@ pub fn run() {
         "rms",
         "covered",
         "farthest",
+        "99 %",
         "t/p",
         "<5%",
         "<15%",
@@ -60,17 +61,18 @@ fn row(scan: &Scan, kept: usize) {
         Ok(s) => s,
         Err(error) => return println!("{head} {error}{}", mark(true)),
     };
-    let (to, from) = two_sided(scan, &s);
+    let (to, from, within) = two_sided(scan, &s);
     let [under_5, under_15, under_30] = thin_shares(&s, [5.0, 15.0, 30.0]).map(|s| 100.0 * s);
     let volume = signed_volume(&s);
     let per_point = s.mesh.triangles.len() as f64 / s.report.reduce.output_points as f64;
     let is_missed = per_point > MOST_TRIANGLES || scan.truth.is_closed() && volume <= 0.0;
     println!(
-        "{head} {:>6.2} {:>6.2} {:>7.2} {:>8.2} {per_point:>5.2} {under_5:>5.2} {under_15:>5.2} {under_30:>5.1} {:>6}{}",
+        "{head} {:>6.2} {:>6.2} {:>7.2} {:>8.2} {:>6.2} {per_point:>5.2} {under_5:>5.2} {under_15:>5.2} {under_30:>5.1} {:>6}{}",
         1e4 * to.mean,
         1e4 * to.rms,
         1e4 * from.mean,
         1e4 * from.max,
+        1e4 * within,
         if volume > 0.0 { "+" } else { "-" },
         mark(is_missed)
     );

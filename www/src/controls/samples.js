@@ -1,4 +1,4 @@
-/** The simulated scans, at the sizes of the paper's examples. */
+/** The simulated scans, with their number of points (`src/samples/model.rs`): the duck and the pig have the paper's. */
 export const SAMPLES = /** @type {const} */ ({
   duck: { title: 'Toy duck', count: 35_647 },
   pig: { title: 'Toy pig', count: 171_875 },

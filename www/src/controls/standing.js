@@ -3,10 +3,12 @@ import { announce, byId, element } from '../dom.js';
 /** @import { Axis } from 'pointweave/viewer' */
 /** @import { Unit } from 'pointweave' */
 
-/** What is kept with a scan. @typedef {{ up?: Axis, unit?: Unit }} Stand */
+/** What is kept with a scan: the axis that is up or the direction, and the unit. @typedef {{ up?: Axis | [number, number, number], unit?: Unit }} Stand */
 
 const SIDES = /** @type {Record<Axis, string>} */ ({ z: 'Z', y: 'Y', x: 'X', '-z': '−Z', '-y': '−Y', '-x': '−X' });
 const UNITS = { mm: 'millimetres', cm: 'centimetres', m: 'metres', in: 'inches', ft: 'feet', 'us-ft': 'US survey feet', deg: 'degrees' };
+/** Of a direction between the axes. */
+const PICKED = 'picked';
 /** Those that a person chooses from; a file may say others. */
 const CHOICES = /** @type {const} */ (['mm', 'cm', 'm', 'in', 'ft']);
 
@@ -15,9 +17,26 @@ export class Standing {
   #words = byId('stand-words', HTMLElement);
   #side = byId('stand-up', HTMLSelectElement);
   #unit = byId('stand-unit', HTMLSelectElement);
+  #pick = byId('stand-pick', HTMLButtonElement);
+  #stale = byId('stand-stale', HTMLElement);
+  #ask;
 
-  /** @param {(stand: Stand) => void} changed what a person chose */
-  constructor(changed) {
+  /**
+   * @param {(stand: Stand) => void} changed what a person chose
+   * @param {(chosen: import('../look/piece.js').Chosen | null) => void} ask has the person choose a place of the mesh; null: no more
+   */
+  constructor(changed, ask) {
+    this.#ask = ask;
+    this.#pick.addEventListener('click', () => {
+      if (this.picking) return this.stop();
+      this.#pick.ariaPressed = 'true';
+      announce('Click the floor, or the side that is up, in the picture');
+      ask((_, normal) => {
+        this.stop();
+        changed({ up: normal });
+        announce(this.#words.textContent ?? '');
+      });
+    });
     this.#side.append(...Object.entries(SIDES).map(([value, textContent]) => element('option', { value, textContent })));
     this.#side.addEventListener('change', () => {
       changed({ up: /** @type {Axis} */ (this.#side.value) });
@@ -29,13 +48,34 @@ export class Standing {
     });
   }
 
-  /** @param {{ up: Axis, unit?: Unit }} stand as the scan is shown */
-  show({ up, unit }) {
-    this.#words.textContent = `${SIDES[up]} is up, lengths in ${unit ? UNITS[unit] : 'file units'}`;
+  /** A side is to be picked in the picture. */
+  get picking() {
+    return this.#pick.ariaPressed === 'true';
+  }
+
+  /** No side is to be picked any more. */
+  stop() {
+    if (!this.picking) return;
+    this.#pick.ariaPressed = 'false';
+    this.#ask(null);
+  }
+
+  /**
+   * @param {{ up: Axis, unit?: Unit }} stand as the scan is shown
+   * @param {{ picked: boolean, mesh: boolean, stale: boolean }} how whether a plane was picked, there is a mesh to pick on, and the result was
+   *   made when another side was up
+   */
+  show({ up, unit }, { picked, mesh, stale }) {
+    this.#stale.hidden = !stale;
+    this.#pick.hidden = !mesh;
+    if (!mesh) this.stop();
+    this.#side.querySelector(`[value=${PICKED}]`)?.remove();
+    if (picked) this.#side.append(element('option', { value: PICKED, textContent: 'the side that was picked' }));
+    this.#words.textContent = `${picked ? 'The picked side' : SIDES[up]} is up, lengths in ${unit ? UNITS[unit] : 'file units'}`;
     const known = unit && !CHOICES.some((name) => name === unit) ? [unit] : [];
     const options = [...CHOICES, ...known].map((value) => element('option', { value, textContent: UNITS[value] }));
     this.#unit.replaceChildren(...(unit ? [] : [element('option', { value: '', textContent: 'not known', disabled: true })]), ...options);
-    this.#side.value = up;
+    this.#side.value = picked ? PICKED : up;
     this.#unit.value = unit ?? '';
   }
 }

@@ -117,7 +117,7 @@ export class Look {
     this.#settle();
   }
 
-  /** Has the person choose a triangle of the mesh in the picture, or no more. @param {((triangle: number) => void) | null} chosen */
+  /** Has the person choose a triangle of the mesh in the picture, or no more. @param {import('./piece.js').Chosen | null} chosen */
   choosePiece(chosen) {
     if (chosen && this.#view !== 'mesh' && this.#view !== 'compare') this.#show('mesh');
     this.#piece.ask(chosen);
@@ -249,8 +249,16 @@ export class Look {
     return this.#viewer?.upright ?? 'y';
   }
 
-  set upright(/** @type {Axis} */ axis) {
-    if (this.#viewer) this.#viewer.up = axis;
+  /** The unit has changed: legends say it anew. */
+  relabel() {
+    if (!this.#scan) return;
+    this.#offerPaints();
+    this.#show(this.#view);
+  }
+
+  /** Stands what is shown on another side, or on a plane with that normal. */
+  stand(/** @type {Axis | [number, number, number]} */ up) {
+    if (this.#viewer) this.#viewer.up = up;
   }
 }
 

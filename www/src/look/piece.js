@@ -3,22 +3,27 @@ import { announce } from '../dom.js';
 /** A pointer that moves farther than this, in CSS pixels, turns the picture and chooses nothing. */
 const STILL = 4;
 
+/**
+ * What is told of a choice: the triangle, and the direction of the plane around it that is seen.
+ * @typedef {(triangle: number, normal: [number, number, number]) => void} Chosen
+ */
+
 /** Lets a person choose a triangle of the mesh: by a click, or by Enter for the one in the middle. */
 export class PieceChoice {
   #canvas;
-  /** @type {((triangle: number) => void) | null} */
+  /** @type {Chosen | null} */
   #chosen = null;
   #down = { x: 0, y: 0 };
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {(x: number, y: number) => { layer: string, triangle: number } | null} pick
+   * @param {import('pointweave/viewer').Viewer['pick']} pick
    */
   constructor(canvas, pick) {
     this.#canvas = canvas;
     const choose = (/** @type {number} */ x, /** @type {number} */ y) => {
       const found = pick(x, y);
-      if (found?.layer === 'mesh') this.#chosen?.(found.triangle);
+      if (found?.layer === 'mesh') this.#chosen?.(found.triangle, found.normal);
       else announce('There is no mesh at this place');
     };
     canvas.addEventListener('pointerdown', ({ clientX, clientY }) => (this.#down = { x: clientX, y: clientY }));
@@ -34,7 +39,7 @@ export class PieceChoice {
     });
   }
 
-  /** @param {((triangle: number) => void) | null} chosen  null: nothing is to be chosen */
+  /** @param {Chosen | null} chosen  null: nothing is to be chosen */
   ask(chosen) {
     this.#chosen = chosen;
     this.#canvas.classList.toggle('choosing', chosen !== null);

@@ -5,7 +5,7 @@
  * @typedef {{ title: string, text: string, advice: string }} Message
  */
 
-const READABLE = 'It is none of the kinds of scan that Pointweave reads: PLY, LAS, LAZ, E57, PTX, PCD, OBJ, OFF, STL, GLB, 3MF, elevation grids, Gaussian splats, or text with x y z on each line; alone or in a ZIP file.';
+const READABLE = 'It is none of the kinds of scan that Pointweave reads: PLY, LAS, LAZ, E57, PTX, PCD, OBJ, OFF, STL, GLB, 3MF, elevation grids (ESRI ASCII, GeoTIFF), Gaussian splats (PLY, SPLAT, SPZ), or text with x y z on each line; alone, or in a ZIP or gzip file.';
 const CONVERT = 'Convert the file to PLY in the program that made it.';
 const DEFECT = 'Try again. If it happens once more, please report the line below.';
 

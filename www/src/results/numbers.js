@@ -28,7 +28,7 @@ export class Numbers {
 
   /** A new scan: only its size and its place are known. */
   opened(/** @type {Scan} */ { count, cloud: { origin, unit } }) {
-    this.#unit = unit;
+    this.unit = unit;
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
     this.#set('inputPoints', count, format.count);
     this.#doubt.hidden = true;
@@ -46,6 +46,7 @@ export class Numbers {
   /** What lengths are said in; those that are shown are said anew. */
   set unit(/** @type {import('pointweave').Unit | undefined} */ unit) {
     this.#unit = unit;
+    byId('error-unit', HTMLElement).textContent = unit ? 'length' : 'file units';
     for (const name of ['errorMean', 'errorRms', 'errorMax']) {
       const value = this.#box.querySelector(`data[data-number="${name}"]`)?.getAttribute('value');
       if (value !== null && value !== undefined) this.#set(name, Number(value), (length) => this.#length(length));

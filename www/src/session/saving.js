@@ -16,6 +16,7 @@ const FORMATS = /** @type {Record<What, Record<string, string>>} */ ({
     obj: 'for modelling programs',
     stl: 'for 3D printing',
     '3mf': 'for 3D printing, in colour',
+    usdz: 'for iPhone and iPad',
   },
   reduced: {
     ply: 'keeps everything',

@@ -36,7 +36,7 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page.
  *
  * Events: `state` (a State), `opened` (a Scan), `progress` ({stage, overall}), `made` (an Outcome),
- * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title}); the value is the event's `detail`.
+ * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title, given}); the value is the event's `detail`.
  */
 export class Session extends EventTarget {
   settings = new Settings();
@@ -46,6 +46,8 @@ export class Session extends EventTarget {
   outcome = null;
   /** The options of the last job. */
   #asked = '';
+  /** Which way was up for it. */
+  #stood = '';
   /** @type {AbortController | null} */
   #job = null;
   /** What is computed beside the job, and ends with it. @type {AbortController | null} */
@@ -77,6 +79,11 @@ export class Session extends EventTarget {
     }
   }
 
+  /** The result was made when another side was up, which helps to tell which side is out: made again, it may be another. */
+  get stale() {
+    return this.outcome !== null && JSON.stringify(this.scan?.cloud.up) !== this.#stood;
+  }
+
   /** Reads a file beside the page and makes its mesh. */
   openAddress(/** @type {string} */ src) {
     const name = src.split('/').at(-1)?.split(/[?#]/)[0] || 'scan';
@@ -103,6 +110,7 @@ export class Session extends EventTarget {
     if (!scan) return;
     const job = this.#begin('working');
     this.#asked = JSON.stringify(this.settings.options(this.target));
+    this.#stood = JSON.stringify(scan.cloud.up);
     try {
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
@@ -196,7 +204,7 @@ export class Session extends EventTarget {
       this.outcome = null;
       this.#emit('opened', this.scan);
     } catch (error) {
-      this.#end(job, 'failed', { error, title: source.title });
+      this.#end(job, 'failed', { error, title: source.title, given: source.given });
       // The scan that was open stays; the job that this file interrupted goes on.
       if (this.#job === null && this.scan && !this.outcome) await this.run();
       return;

@@ -167,7 +167,6 @@ macro_rules! body {
     };
     (options $(
         $(#[doc = $doc:literal])*
-        $(#[serde($($serde:tt)*)])?
         $kind:ident $field:ident: $ty:ty = $default:expr $(, $facet:ident($($fact:tt)*))*;
     )*) => {
         rows::Body::Options(vec![ $( rows::Row {

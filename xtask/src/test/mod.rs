@@ -37,7 +37,10 @@ fn all(checks: &[Check], log: &mut Log) {
         }
         match check {
             Check::Fmt => log.step("fmt", fmt),
-            Check::Clippy => log.step("clippy", clippy),
+            Check::Clippy => {
+                log.step("clippy", clippy);
+                log.step("rustdoc", rustdoc);
+            }
             Check::Native => log.step("native", native),
             Check::Wasm => wasm(log),
             Check::Types => log.step("types", types),
@@ -126,6 +129,15 @@ fn clippy() -> Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// Every link in the docs leads somewhere, also those that only contributors read.
+fn rustdoc() -> Result<()> {
+    let mut doc = cargo();
+    doc.args(["doc", "--quiet", "--no-deps", "--document-private-items"])
+        .args(["--package", "pointweave"])
+        .env("RUSTDOCFLAGS", "-D warnings");
+    run(&mut doc, "the docs have warnings, see above")
 }
 
 /// With threads: the feature adds tests and takes none away.
@@ -217,6 +229,8 @@ fn wasm_file(file: &str, name: Option<&str>) -> Result<()> {
 
 fn wasm_tests(build: Build, toolchain: &Toolchain, runner: &Path) -> Command {
     let mut tests = build.cargo(toolchain, "test");
+    // Files of both kinds are read and written, which the engine does not.
+    tests.args(["--features", "files,packed"]);
     // By name: documentation tests would take rustdoc from PATH, and it is another compiler's.
     tests.args(["--test", "wasm"]);
     if build == Build::Threads {

@@ -1,0 +1,137 @@
+//! USDZ (Pixar; Apple's AR Quick Look): one stored layer as text, a mesh or points under a node that carries the origin in
+//! double precision. y is up in metres. Colours are the primvar `displayColor`, linear as USD wants them, and the material
+//! shows them; attributes are primvars of their names.
+
+use super::glb::{bounds, check_finite, unit_normals};
+use super::local::Local;
+use super::values::linear;
+use super::zip::{Packing, archive};
+use crate::base::error::{Error, Result};
+use crate::cloud::Attribute;
+use crate::formats::raw_cloud::RawCloud;
+use std::fmt::{Display, Write};
+
+/// What the material needs to show the colours of the vertices.
+const COLORED: &str = "        def Shader \"Colors\"\n        {\n            \
+     uniform token info:id = \"UsdPrimvarReader_float3\"\n            \
+     string inputs:varname = \"displayColor\"\n            float3 outputs:result\n        }\n";
+
+/// Writes points and, with `triangles`, a mesh.
+///
+/// # Errors
+/// [`Error::EmptyCloud`]; [`Error::NonFinite`].
+pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>) -> Result<Vec<u8>> {
+    if cloud.points() == 0 {
+        return Err(Error::EmptyCloud);
+    }
+    let Local { origin, positions } = Local::of(cloud)?;
+    let triangles = triangles.filter(|indices| !indices.is_empty());
+    let mut layer = format!(
+        "#usda 1.0\n(\n    defaultPrim = \"Scan\"\n    doc = \"Pointweave {}\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
+         def Xform \"Scan\" (\n    kind = \"component\"\n)\n{{\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    // Writing to a string cannot fail.
+    if let Some([x, y, z]) = origin {
+        let _ = write!(
+            layer,
+            "    double3 xformOp:translate = ({x}, {y}, {z})\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n"
+        );
+    }
+    let kind = match triangles {
+        Some(_) => "Mesh \"Surface\"",
+        None => "Points \"Points\"",
+    };
+    let _ = write!(
+        layer,
+        "    def {kind} (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{\n"
+    );
+    let corners = bounds(&positions).map(|corner| triple(&corner));
+    array(&mut layer, "float3[] extent", ONCE, corners);
+    array(&mut layer, "point3f[] points", ONCE, triples(&positions));
+    if let Some(indices) = triangles {
+        layer += "        uniform bool doubleSided = 1\n        uniform token subdivisionScheme = \"none\"\n";
+        let counts = std::iter::repeat_n(3, indices.len() / 3);
+        array(&mut layer, "int[] faceVertexCounts", ONCE, counts);
+        array(&mut layer, "int[] faceVertexIndices", ONCE, indices);
+    }
+    if let Some(normals) = unit_normals(cloud)? {
+        array(
+            &mut layer,
+            "normal3f[] normals",
+            A_VERTEX,
+            triples(&normals),
+        );
+    }
+    if let Some(colors) = &cloud.colors {
+        let linear: Vec<f32> = (0..=u8::MAX).map(|c| linear(c) as f32).collect();
+        let values: Vec<f32> = colors.iter().map(|&c| linear[usize::from(c)]).collect();
+        let name = "color3f[] primvars:displayColor";
+        array(&mut layer, name, A_VERTEX, triples(&values));
+    }
+    for (name, attribute) in names(&cloud.attributes).iter().zip(&cloud.attributes) {
+        check_finite(&attribute.name, &attribute.values, 1)?;
+        let name = format!("float[] primvars:{name}");
+        array(&mut layer, &name, A_VERTEX, &attribute.values);
+    }
+    layer += "        rel material:binding = </Scan/Material>\n    }\n\n    def Material \"Material\"\n    {\n        \
+              token outputs:surface.connect = </Scan/Material/Surface.outputs:surface>\n\n        \
+              def Shader \"Surface\"\n        {\n            uniform token info:id = \"UsdPreviewSurface\"\n            \
+              float inputs:metallic = 0\n            float inputs:roughness = 0.9\n";
+    if cloud.colors.is_some() {
+        layer += "            color3f inputs:diffuseColor.connect = </Scan/Material/Colors.outputs:result>\n";
+    }
+    layer += "            token outputs:surface\n        }\n";
+    if cloud.colors.is_some() {
+        layer += COLORED;
+    }
+    layer += "    }\n}\n";
+    Ok(archive(
+        &[("scan.usda", layer.as_bytes())],
+        Packing::StoredAt64,
+    ))
+}
+
+/// What is said of an array: that it has a value a vertex, or nothing.
+const A_VERTEX: &str = " (interpolation = \"vertex\")";
+const ONCE: &str = "";
+
+/// The line `TYPE NAME = [a, b, c]`.
+fn array<T: Display>(
+    layer: &mut String,
+    name: &str,
+    meaning: &str,
+    values: impl IntoIterator<Item = T>,
+) {
+    let _ = write!(layer, "        {name} = [");
+    for (i, value) in values.into_iter().enumerate() {
+        let _ = write!(layer, "{}{value}", if i == 0 { "" } else { ", " });
+    }
+    let _ = writeln!(layer, "]{meaning}");
+}
+
+fn triples(values: &[f32]) -> impl Iterator<Item = String> {
+    values.chunks_exact(3).map(triple)
+}
+
+fn triple(values: &[f32]) -> String {
+    format!("({}, {}, {})", values[0], values[1], values[2])
+}
+
+/// A name for each attribute that USD takes: letters, digits and underscores; no name twice, and none that USD has itself.
+fn names(attributes: &[Attribute]) -> Vec<String> {
+    let mut names: Vec<String> = vec!["displayColor".into(), "displayOpacity".into()];
+    let own = names.len();
+    for Attribute { name, .. } in attributes {
+        let known = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let mut word: String = name.chars().map(known).collect();
+        if !word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+            word.insert(0, '_');
+        }
+        while names.contains(&word) {
+            word.push('_');
+        }
+        names.push(word);
+    }
+    names.split_off(own)
+}
