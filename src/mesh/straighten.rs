@@ -242,7 +242,7 @@ mod tests {
         straighten(
             &mut mesh,
             &[on(Vec3::new(0.3, 0.0, 0.2))],
-            &mut [false; 5],
+            (&mut [false; 5], &[false; 5]),
             (1.0, 0.0),
         );
         assert_eq!(mesh.vertices[0], Vec3::new(0.3, 0.0, 0.2));
@@ -250,7 +250,7 @@ mod tests {
         straighten(
             &mut mesh,
             &[on(Vec3::new(1.4, 0.0, 0.0))],
-            &mut [false; 5],
+            (&mut [false; 5], &[false; 5]),
             (2.0, 0.0),
         );
         assert_eq!(mesh.vertices[0], Vec3::new(0.7, 0.0, 0.0));
