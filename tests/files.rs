@@ -266,6 +266,42 @@ fn bounds(cloud: &RawCloud) -> ([f64; 3], [f64; 3]) {
     (low, high)
 }
 
+/// The package names the formats by hand: its check, its type, and its table for people with every extension.
+#[test]
+fn the_package_names_every_format_that_is_read() {
+    let text = |path: &str| {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path);
+        std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    };
+    let quoted = |path: &str, start: &str, end: char| -> Vec<String> {
+        let text = text(path);
+        let (_, after) = text.split_once(start).expect(start);
+        let list = after.split(end).next().expect("a list");
+        list.split('\'')
+            .skip(1)
+            .step_by(2)
+            .map(String::from)
+            .collect()
+    };
+    let names = Format::ALL.map(Format::name);
+    let checked = quoted("pkg/engine/options.js", "format: { ...choice(", ')');
+    assert_eq!(checked, names, "READ.format of pkg/engine/options.js");
+    let typed = quoted("pkg/types.d.ts", "export type Format =", ';');
+    assert_eq!(typed, names, "Format of pkg/types.d.ts");
+    let table = text("pkg/docs/files.md");
+    for format in Format::ALL {
+        let start = format!("| `{}` | `.", format.name());
+        let row = table.lines().find(|line| line.starts_with(&start));
+        let row = row.unwrap_or_else(|| panic!("no row of pkg/docs/files.md starts {start}"));
+        for extension in format.extensions() {
+            assert!(
+                row.contains(&format!(".{extension}")),
+                ".{extension}: {row}"
+            );
+        }
+    }
+}
+
 #[test]
 fn every_shared_file_ends_in_the_right_result_or_a_typed_error() {
     let Some(data) = data() else { return };

@@ -65,6 +65,32 @@ fn counts_are_exact_and_every_point_has_its_colour_and_normal() {
     assert_eq!(Model::from_name("cow"), None);
 }
 
+/// JavaScript names the models by hand: the package's check and type, the page's list and buttons.
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn the_package_and_the_page_name_every_model() {
+    for (path, start, end) in [
+        ("pkg/engine/options.js", "const MODEL = choice(", ";"),
+        ("pkg/types.d.ts", "export type Model =", ";"),
+        ("www/src/controls/samples.js", "export const SAMPLES =", ";"),
+        ("www/index.html", "id=\"samples\"", "</div>"),
+    ] {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        let text = std::fs::read_to_string(file).expect(path);
+        let (_, after) = text.split_once(start).expect(start);
+        let (list, _) = after.split_once(end).expect(end);
+        for model in Model::ALL {
+            let name = model.name();
+            let said = [
+                format!("'{name}'"),
+                format!(" {name}: {{"),
+                format!("data-sample=\"{name}\""),
+            ];
+            assert!(said.iter().any(|s| list.contains(s)), "{name} in {path}");
+        }
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_another_scan() {
     for model in Model::ALL {

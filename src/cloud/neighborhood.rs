@@ -11,7 +11,6 @@ use glam::Vec3;
 
 use crate::base::lanes::{LANES, Lanes, places_within};
 use crate::cloud::octree::Octree;
-use crate::cloud::queries::Neighbor;
 
 /// Points of a cell, at most: enough to share the search, few enough that blocks find most of what was gathered useful.
 pub const CELL: usize = 128;
@@ -152,7 +151,13 @@ impl Neighborhood {
     /// Distance from `q` to the `k`-th nearest gathered point, or to the farthest one if there are fewer; where points lie on a
     /// surface, to within a few hundredths: it is counted how many are within a radius, and that is scaled until it fits.
     pub fn kth_distance(&mut self, q: Vec3, k: usize) -> f32 {
-        self.measure(q);
+        let [x, y, z] = q.to_array().map(Lanes::splat);
+        self.squares.clear();
+        for block in (0..self.at[0].len()).step_by(LANES) {
+            let [dx, dy, dz] =
+                [(0, x), (1, y), (2, z)].map(|(axis, q)| Lanes::load(&self.at[axis][block..]) - q);
+            self.squares.push(dx * dx + dy * dy + dz * dz);
+        }
         let few = self.around.len() <= 2 * k;
         let mut square = self.square;
         for _ in 0..if few { 0 } else { GUESSES } {
@@ -165,34 +170,6 @@ impl Neighborhood {
             }
         }
         self.select(k)
-    }
-
-    /// Squared distances of all that was gathered, whole lanes of them, padding too.
-    fn measure(&mut self, q: Vec3) {
-        let [x, y, z] = q.to_array().map(Lanes::splat);
-        self.squares.clear();
-        for block in (0..self.at[0].len()).step_by(LANES) {
-            let [dx, dy, dz] =
-                [(0, x), (1, y), (2, z)].map(|(axis, q)| Lanes::load(&self.at[axis][block..]) - q);
-            self.squares.push(dx * dx + dy * dy + dz * dz);
-        }
-    }
-
-    /// The nearest gathered point, of equally near ones the first, where it is nearer than `found`; else `found`.
-    pub fn nearer_than(&mut self, found: Neighbor, q: Vec3) -> Neighbor {
-        self.measure(q);
-        let far = Lanes::splat(found.distance2);
-        let least = self.squares.iter().fold(far, |least, d| d.min(least));
-        let distance2 = least.to_array().into_iter().fold(found.distance2, f32::min);
-        if distance2 >= found.distance2 {
-            return found;
-        }
-        let distances = self.squares.iter().flat_map(|d| d.to_array());
-        let mut places = distances.zip(&self.around);
-        match places.find(|&(d, _)| d == distance2) {
-            Some((distance2, &index)) => Neighbor { distance2, index },
-            None => found,
-        }
     }
 
     /// How many gathered points are within the square of a distance.

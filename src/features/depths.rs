@@ -1,4 +1,4 @@
-//! Steps of a depth: what a sensor measured from where it stood, and rounded.
+//! Steps of a depth: a sensor rounded the distances that it measured from its own place.
 //!
 //! A depth is the distance from the viewpoint, or that along an optical axis, which may point anywhere. It may be rounded
 //! itself, or what it was computed from: a disparity, whose even steps are steps of the depth that grow with its square. So

@@ -1,4 +1,4 @@
-//! Creases as lines: vertices on one are moved onto the curve that those along it tell together.
+//! Straightens creases: moves each vertex on a crease onto a curve that is fitted to the crease around it.
 //!
 //! Each cell finds the crease from its own tangent planes, so that noise makes it wavy, and keeps its vertex inside of the cell,
 //! beside which the crease may run. So once the triangles are there:

@@ -1,4 +1,4 @@
-//! What of a surface is better not relied on: walls that are as thin as the points are apart, area that no point supports.
+//! Parts of a surface that are better not relied on: walls as thin as the spacing of the points, and area that no point supports.
 
 use crate::fit::cells::Sites;
 use crate::mesh::Mesh;

@@ -25,7 +25,6 @@ pub mod density;
 pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
-mod nearest;
 pub mod paper;
 pub(crate) mod places;
 pub mod placement;
@@ -40,6 +39,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::base::error::Result;
+use crate::base::par;
 use crate::base::params::{Method, Placement, ReduceParams, Target};
 use crate::base::power::Fuzzifier;
 use crate::base::progress::{Part, Progress, Stage};
@@ -133,7 +133,11 @@ pub fn reduce(
     let nearest = if plan.placement == Placement::Sample {
         placement::snap(at, &members, &mut placed)
     } else {
-        nearest::nearest(at, &members, &placed)
+        par::map(
+            placed.len(),
+            || (),
+            |i, ()| placement::nearest(at, &members, i, placed[i].position),
+        )
     };
     let cells = params.cells.then(|| {
         let ranges = clustering.cells.iter();

@@ -228,6 +228,21 @@ impl Sums {
     }
 }
 
+/// The input point nearest to a placed centre `i`, in the octree's order. Most often it is a member, so little is looked at.
+pub fn nearest(tree: &Octree, members: &Members, i: usize, p: Vec3) -> u32 {
+    let away = |(k, _): (u32, f32)| Neighbor {
+        distance2: tree.points[k as usize].distance_squared(p),
+        index: k,
+    };
+    let none = Neighbor {
+        distance2: f32::INFINITY,
+        index: 0,
+    };
+    let nearer = |a: Neighbor, b: Neighbor| if b.distance2 < a.distance2 { b } else { a };
+    let member = members.of(i).map(away).fold(none, nearer);
+    tree.nearer_than(member, p).index
+}
+
 /// Moves every placed point to an input point, no two to the same, and returns which (in the octree's order): the nearest
 /// of those that belong to the centre most, or, for a centre to which none does, the nearest that nobody took.
 pub fn snap(tree: &Octree, members: &Members, placed: &mut [Placed]) -> Vec<u32> {
