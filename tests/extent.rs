@@ -270,7 +270,7 @@ fn relief(x: f64, y: f64) -> f64 {
 }
 
 /// Share of the mesh's area that is more than 10° off the normal that `truth` has at a place of the caller's frame.
-fn turned(s: &Surface, truth: impl Fn(DVec3) -> DVec3) -> f64 {
+fn share_turned(s: &Surface, truth: impl Fn(DVec3) -> DVec3) -> f64 {
     let frame = &s.cloud.reduced.cloud.frame;
     let (mut all, mut off) = (0.0, 0.0);
     for t in &s.mesh.triangles {
@@ -319,7 +319,7 @@ fn scan_lines_far_apart_are_one_surface() {
             DVec3::new(-slope(1e-4, 0.0), -slope(0.0, 1e-4), 1.0).normalize()
         };
         if ratio > 1.0 {
-            let share = turned(&s, normal);
+            let share = share_turned(&s, normal);
             assert!(share < 0.1, "1:{ratio}: {share}");
         }
     }
@@ -354,7 +354,11 @@ fn steps_of_a_depth_are_noise() {
     assert!(says_steps(&s));
     let step = 0.01 / s.cloud.reduced.cloud.frame.diagonal;
     assert!((s.report.reduce.noise * 12f64.sqrt() / step - 1.0).abs() < 0.1);
-    assert!(turned(&s, normal) < 0.1, "{}", turned(&s, normal));
+    assert!(
+        share_turned(&s, normal) < 0.1,
+        "{}",
+        share_turned(&s, normal)
+    );
 }
 
 #[test]
