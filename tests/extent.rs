@@ -263,3 +263,138 @@ fn depth_in_steps_is_a_smooth_surface() {
         assert!(median < 5.0 && most < 12.0, "{step}: {median} {most}");
     }
 }
+
+/// A relief over a square of edge 1, seen by lines along x.
+fn relief(x: f64, y: f64) -> f64 {
+    0.06 * libm::sin(7.0 * x) * libm::cos(6.0 * y) + 0.004 * libm::sin(60.0 * x)
+}
+
+/// Share of the mesh's area that is more than 10° off the normal that `truth` has at a place of the caller's frame.
+fn share_turned(s: &Surface, truth: impl Fn(DVec3) -> DVec3) -> f64 {
+    let frame = &s.cloud.reduced.cloud.frame;
+    let (mut all, mut off) = (0.0, 0.0);
+    for t in &s.mesh.triangles {
+        let at = |v: u32| DVec3::from_array(frame.to_caller(s.mesh.vertices[v as usize]));
+        let [a, b, c] = t.map(at);
+        let normal = (b - a).cross(c - a);
+        all += normal.length();
+        let cosine = normal
+            .normalize_or_zero()
+            .dot(truth((a + b + c) / 3.0))
+            .abs();
+        if cosine < libm::cos(10f64.to_radians()) {
+            off += normal.length();
+        }
+    }
+    off / all
+}
+
+#[test]
+fn scan_lines_far_apart_are_one_surface() {
+    let says_lines = |s: &Surface| s.report.reduce.doubts.iter().any(|d| d.code == "lines");
+    for ratio in [1.0, 10.0, 20.0] {
+        let mut rng = Rng::new(31);
+        let lines = if ratio == 1.0 { 70 } else { 25 };
+        let each = (f64::from(lines) * ratio) as usize;
+        let mut positions = Vec::new();
+        for line in 0..lines {
+            for _ in 0..each {
+                let (x, y) = (rng.uniform(), f64::from(line) / f64::from(lines - 1));
+                positions.extend([x, y, relief(x, y)]);
+            }
+        }
+        let s = surface(&positions, &SurfaceParams::default()).unwrap();
+        assert_eq!(
+            s.report.reduce.output_points,
+            (positions.len() / 3).div_ceil(3)
+        );
+        assert_eq!(says_lines(&s), ratio > 1.0, "{ratio}");
+        assert_eq!(s.report.components, 1, "1:{ratio}");
+        let holes: Vec<_> = s.report.holes.iter().filter(|h| !h.closed).collect();
+        assert_eq!(holes.len(), 1, "1:{ratio}: {holes:?}");
+        // Lines see the waves along them, with crests nearer to each other than two lines are in three places.
+        let normal = |p: DVec3| {
+            let slope =
+                |dx: f64, dy: f64| (relief(p.x + dx, p.y + dy) - relief(p.x - dx, p.y - dy)) / 2e-4;
+            DVec3::new(-slope(1e-4, 0.0), -slope(0.0, 1e-4), 1.0).normalize()
+        };
+        if ratio > 1.0 {
+            let share = share_turned(&s, normal);
+            assert!(share < 0.1, "1:{ratio}: {share}");
+        }
+    }
+}
+
+#[test]
+fn steps_of_a_depth_are_noise() {
+    // A camera at the origin that looks along z, turned about x; its ranges are rounded.
+    let mut rng = Rng::new(32);
+    let turn = glam::DMat3::from_rotation_x(0.6);
+    let depth = |u: f64, v: f64| 1.0 + 0.05 * libm::sin(5.0 * u) * libm::cos(4.0 * v);
+    let mut clean = Vec::new();
+    let mut rounded = Vec::new();
+    for _ in 0..9000 {
+        let (u, v) = (rng.uniform() - 0.5, rng.uniform() - 0.5);
+        let p = depth(u, v) * DVec3::new(u, v, 1.0);
+        let range = (p.length() / 0.01).round() * 0.01;
+        clean.extend((turn * p).to_array());
+        rounded.extend((turn * p * (range / p.length())).to_array());
+    }
+    let normal = |p: DVec3| {
+        let p = turn.transpose() * p;
+        let at = |u: f64, v: f64| depth(u, v) * DVec3::new(u, v, 1.0);
+        let (u, v) = (p.x / p.z, p.y / p.z);
+        let along = at(u + 1e-4, v) - at(u - 1e-4, v);
+        turn * along.cross(at(u, v + 1e-4) - at(u, v - 1e-4)).normalize()
+    };
+    let says_steps = |s: &Surface| s.report.reduce.doubts.iter().any(|d| d.code == "steps");
+    let s = surface(&clean, &SurfaceParams::default()).unwrap();
+    assert!(!says_steps(&s));
+    let s = surface(&rounded, &SurfaceParams::default()).unwrap();
+    assert!(says_steps(&s));
+    let step = 0.01 / s.cloud.reduced.cloud.frame.diagonal;
+    assert!((s.report.reduce.noise * 12f64.sqrt() / step - 1.0).abs() < 0.1);
+    assert!(
+        share_turned(&s, normal) < 0.1,
+        "{}",
+        share_turned(&s, normal)
+    );
+}
+
+#[test]
+fn creases_stay_straight_in_noise() {
+    let mut rng = Rng::new(33);
+    let mut positions = Vec::new();
+    let turn = glam::DMat3::from_rotation_x(0.5) * glam::DMat3::from_rotation_y(0.3);
+    for i in 0..18_000 {
+        let (a, b) = (rng.uniform() - 0.5, rng.uniform() - 0.5);
+        // 0.1 % of the diagonal.
+        let c = 0.5 * if i % 2 == 0 { 1.0 } else { -1.0 } + 0.001 * 3f64.sqrt() * rng.normal();
+        let p = [
+            DVec3::new(a, b, c),
+            DVec3::new(c, a, b),
+            DVec3::new(b, c, a),
+        ][i % 3];
+        positions.extend((turn * p).to_array());
+    }
+    let s = surface(&positions, &SurfaceParams::default()).unwrap();
+    let frame = &s.cloud.reduced.cloud.frame;
+    // Distance to the cube near its edges, away from its corners.
+    let (mut area, mut sum) = (0.0, 0.0);
+    for t in &s.mesh.triangles {
+        let at = |v: u32| {
+            turn.transpose() * DVec3::from_array(frame.to_caller(s.mesh.vertices[v as usize]))
+        };
+        let [a, b, c] = t.map(at);
+        let middle = ((a + b + c) / 3.0).abs();
+        let mut sorted = middle.to_array();
+        sorted.sort_unstable_by(f64::total_cmp);
+        if sorted[1] > 0.48 && sorted[0] < 0.4 {
+            let size = (b - a).cross(c - a).length();
+            area += size;
+            sum += size * (sorted[2] - 0.5).abs() / frame.diagonal;
+        }
+    }
+    // 5.5e-4 where every cell knows its own crease alone.
+    assert!(sum / area < 4.6e-4, "{}", sum / area);
+}

@@ -13,7 +13,7 @@ use crate::base::linalg::{outer, sym_eigen};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::noise::quantile;
-use crate::features::steps::{LEVEL, LEVELS, NEAR, PATCH, SAMPLE, TERRACES, asked};
+use crate::features::terraces::{LEVEL, LEVELS, NEAR, PATCH, SAMPLE, TERRACES, asked};
 use glam::{DVec3, Vec3};
 
 /// Depths nearer than this (unit frame) are of one level: what single precision rounds, and files of some digits do.

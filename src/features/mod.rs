@@ -29,6 +29,7 @@ pub mod outliers;
 pub(crate) mod planes;
 pub(crate) mod scatter;
 pub(crate) mod steps;
+pub(crate) mod terraces;
 pub(crate) mod values;
 
 use crate::base::error::Result;

@@ -13,26 +13,13 @@ use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::depths;
 use crate::features::noise::quantile;
+use crate::features::terraces::{LEVEL, LEVELS, NEAR, PATCH, SAMPLE, TERRACES, asked};
 use glam::{DVec2, Vec3};
 
-/// Points whose coordinates are looked at.
-pub(crate) const SAMPLE: usize = 1 << 15;
-/// Points a level, at least: fewer are no lattice, however the values lie.
-pub(crate) const LEVEL: usize = 8;
 /// Values nearer than this (unit frame) are one level: some times what single precision rounds.
 const SAME: f32 = 1e-6;
 /// Differences of levels are whole multiples of the step to this share of it, but for this share of them.
 const WHOLE: (f32, f32) = (0.05, 0.02);
-/// Points that are asked for their terraces, and the neighbours of each.
-const ASKED: usize = 400;
-/// See [`ASKED`].
-pub(crate) const NEAR: usize = 24;
-/// Points of one level are a patch, no line, when their lesser variance is this share of the larger one: a straight line has 0.
-pub(crate) const PATCH: f64 = 0.1;
-/// Share of the points whose neighbours must show a patch: those of a third of a closed surface face the axis.
-pub(crate) const TERRACES: f32 = 0.25;
-/// Levels that show terraces, at least: the floor and the lid of a box on a raster are two.
-pub(crate) const LEVELS: usize = 3;
 
 /// Standard deviation of the rounding along the axis, or of the depth seen from the points' `eye`s, that has the coarsest
 /// steps (unit frame); 0 without steps.
@@ -46,12 +33,6 @@ pub(crate) fn noise(tree: &Octree, eye: &(dyn Fn(usize) -> Option<Vec3> + Sync))
         coarsest = depths::step(tree, eye);
     }
     coarsest / 12f32.sqrt()
-}
-
-/// The points that are asked for their terraces.
-pub(crate) fn asked(tree: &Octree) -> impl Iterator<Item = usize> {
-    let n = tree.points.len();
-    (0..n).step_by(n.div_ceil(ASKED).max(1))
 }
 
 /// The step of the lattice that the coordinates along an axis lie on.

@@ -4,8 +4,8 @@
 //! of Hermite data", 2002.
 
 use crate::base::linalg::sym_eigen;
+use crate::mesh::curves::OnCrease;
 use crate::mesh::probe::{MARGIN, Probe, Quad, Vertex, clamp};
-use crate::mesh::straighten::OnCrease;
 use crate::mesh::surface::Implicit;
 use glam::{DVec3, Vec3};
 use std::ops::Range;

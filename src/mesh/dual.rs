@@ -15,10 +15,10 @@
 use crate::base::error::Result;
 use crate::base::par;
 use crate::mesh::creases::{self, Candidate, Crossing, Moved};
+use crate::mesh::curves::OnCrease;
 use crate::mesh::lattice::{Lattice, Place, corner};
 use crate::mesh::loops::{LoopTable, Loops, ambiguous_faces, edge_corners, face_corners};
 use crate::mesh::probe::{Probe, Quad, Vertex, clamp};
-use crate::mesh::straighten::OnCrease;
 use crate::mesh::surface::Implicit;
 use glam::{DVec3, IVec3, Vec3};
 

@@ -8,11 +8,14 @@ use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::features::outliers;
 use crate::reduce::Reduced;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::borrow::Cow;
 
 /// Cosine of the largest angle between a normal of the cloud and the measured one: 60°.
 const ACROSS: f32 = 0.5;
+/// Length of the mean direction from which on points are all on one side: those of half a ball have 0.5, of a picture 60° to
+/// either side wide 0.75.
+const AHEAD: f32 = 0.7;
 
 /// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
 /// as a scanner knows more than neighbours tell.
@@ -20,12 +23,20 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     progress.update(Stage::Octree, 0.0)?;
     let tree = Octree::build(&cloud.points);
     progress.update(Stage::Octree, 1.0)?;
-    let eyes = |i: usize| match &cloud.viewpoints {
-        Some(viewpoints) => viewpoints.seeing(tree.order[i] as usize),
-        // The frame of a depth camera has the camera at its origin.
-        None => Some(DVec3::ZERO),
+    // The frame of a depth camera has the camera at its origin, with all points ahead of it.
+    let origin = cloud.frame.to_unit([0.0; 3]);
+    let directions = tree
+        .points
+        .iter()
+        .map(|&p| (p - origin).normalize_or_zero());
+    let ahead = directions.sum::<Vec3>().length() > AHEAD * tree.points.len() as f32;
+    let eye = |i: usize| match &cloud.viewpoints {
+        Some(viewpoints) => {
+            let seeing = viewpoints.seeing(tree.order[i] as usize)?;
+            Some(cloud.frame.to_unit(seeing.to_array()))
+        }
+        None => ahead.then_some(origin),
     };
-    let eye = |i: usize| eyes(i).map(|eye| cloud.frame.to_unit(eye.to_array()));
     let mut features = Features::measure_seen(&tree, &eye, progress)?;
     if let Some(normals) = &cloud.normals {
         for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {

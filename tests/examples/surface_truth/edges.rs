@@ -130,34 +130,6 @@ fn row(scan: &Scan, kept: usize) {
             found += f64::from(near.iter().any(|n| n.0.distance(p) < NEAR * d));
         }
     }
-    if std::env::var("DBG").is_ok() {
-        let ends: Vec<DVec3> = edges.iter().flatten().copied().collect();
-        let corner = |p: DVec3| {
-            ends.iter()
-                .map(|e| e.distance(p) / d)
-                .fold(f64::INFINITY, f64::min)
-        };
-        for (lo, hi) in [
-            (0.0, 5e-4),
-            (5e-4, 10e-4),
-            (10e-4, 20e-4),
-            (20e-4, 40e-4),
-            (40e-4, 100e-4),
-        ] {
-            let of: Vec<_> = near.iter().filter(|n| n.1 >= lo && n.1 < hi).collect();
-            let at_corner = of.iter().filter(|n| corner(n.0) < 0.02).count();
-            let off = of.iter().map(|n| scan.truth.distance(n.0) / d).sum::<f64>()
-                / of.len().max(1) as f64;
-            println!(
-                "   {:.0}-{:.0}e-4: {} near corners {} mean distance to surface {:.2}e-4",
-                1e4 * lo,
-                1e4 * hi,
-                of.len(),
-                at_corner,
-                1e4 * off
-            );
-        }
-    }
     let mut sorted: Vec<f64> = near.iter().map(|n| 1e4 * n.1).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let [half, most] = [0.5, 0.9].map(|q| {

@@ -15,7 +15,7 @@ pub fn run() {
         "(edges and vertices that are no manifold, duplicates, triangles without area or with a corner twice,"
     );
     println!(
-        "edges run through twice in one direction, vertices that are not finite or unused); then folded edges"
+        "edges run through twice in one direction, vertices that are not finite or unused); then folded edges, and doubts"
     );
     println!(
         "{:<28} {:>7} {:>6} {:>4} {:>8} {:>5} {:>6} {:>4} {:>4} {:>4} {:>4} {:>5} {:>5} {:>5}",
@@ -64,7 +64,7 @@ pub fn rows(name: &str, points: &[DVec3]) {
             let t = &flaws.topology;
             let is_unclosed = boundary == Boundary::Closed && t.boundary_edges > 0;
             println!(
-                "{head} {:>9} {:>5} {:>6} {:>4} {:>4} {:>4} {:>4} {:>5} {:>5} {:>5}{}",
+                "{head} {:>9} {:>5} {:>6} {:>4} {:>4} {:>4} {:>4} {:>5} {:>5} {:>5} {}{}",
                 s.mesh.triangles.len(),
                 t.components,
                 t.boundary_edges,
@@ -75,6 +75,13 @@ pub fn rows(name: &str, points: &[DVec3]) {
                 t.inconsistent_edges,
                 flaws.stray,
                 flaws.folded,
+                s.report
+                    .reduce
+                    .doubts
+                    .iter()
+                    .map(|d| d.code)
+                    .collect::<Vec<_>>()
+                    .join(","),
                 mark(!flaws.is_clean() || is_unclosed || s.mesh.triangles.is_empty())
             );
         }
