@@ -194,7 +194,8 @@ impl Solve<'_> {
             parts = Parts::new(domains, self.edges, &mut signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
-        settle(self.edges, &known.unary, &mut signs);
+        let along = parts.along_sheets(domains, self.edges, self.adjacency);
+        settle(&along, &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
         let around = Inverted {
             domains,
