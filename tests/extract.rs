@@ -50,6 +50,38 @@ where
     }
 }
 
+/// A function whose points were all seen from far above.
+struct SeenFromAbove<F>(F);
+
+impl<F: Implicit> Implicit for SeenFromAbove<F> {
+    type Scratch = F::Scratch;
+
+    fn scratch(&self) -> F::Scratch {
+        self.0.scratch()
+    }
+
+    fn global(&self, at: DVec3, scratch: &mut F::Scratch) -> f64 {
+        self.0.global(at, scratch)
+    }
+
+    fn locals(&self, at: &[DVec3], values: &mut [f64], scratch: &mut F::Scratch) {
+        self.0.locals(at, values, scratch);
+    }
+
+    fn gradients(
+        &self,
+        at: &[DVec3],
+        found: &mut [Option<(f64, DVec3)>],
+        scratch: &mut F::Scratch,
+    ) {
+        self.0.gradients(at, found, scratch);
+    }
+
+    fn sensor(&self, _: usize) -> Vec3 {
+        Vec3::Z
+    }
+}
+
 fn gradient(value: &impl Fn(DVec3) -> f64, at: DVec3) -> DVec3 {
     let e = 1e-6;
     let slope = |d: DVec3| (value(at + e * d) - value(at - e * d)) / (2.0 * e);
@@ -775,4 +807,36 @@ fn a_second_layer_is_dropped_and_a_piece_farther_off_stays() {
         assert_eq!(found.components, components, "at {radius}");
         assert_eq!(found.boundary_edges == 0, components == 1);
     }
+}
+
+#[test]
+fn a_rim_that_shows_the_sensor_its_back_is_trimmed() {
+    let ball = |x: DVec3| x.length() - 0.3;
+    let down_to = |lowest: f64| {
+        let covered = move |x: DVec3| x.z > lowest;
+        let mut points = sample(&ball, 8000);
+        points.retain(|p| covered(p.as_dvec3()));
+        let field = || Analytic {
+            value: ball,
+            covered,
+            global: ball,
+        };
+        let params = ExtractParams {
+            boundary: Boundary::Open,
+            ..SMOOTH
+        };
+        let lowest = |run: Run| {
+            let vertices = run.out.mesh.vertices.iter();
+            vertices.map(|v| v.z).fold(f32::INFINITY, f32::min)
+        };
+        [
+            lowest(check(&field(), &points, params)),
+            lowest(check(&SeenFromAbove(field()), &points, params)),
+        ]
+    };
+    let [before, after] = down_to(-0.05);
+    assert!(before < -0.03 && after > -0.015, "{before} {after}");
+    // What has no end is left alone.
+    let [before, after] = down_to(-1.0);
+    assert_eq!(before, after);
 }

@@ -100,6 +100,26 @@ impl<'a> Domains<'a> {
         normals
     }
 
+    /// [`Domains::site_normals`], but for sites at which the other functions that were fitted to them say the opposite: theirs.
+    /// A site far off the sheet, in noise, bends the one function of which it is the end.
+    pub(crate) fn agreed_normals(&self, signs: &[f32]) -> Vec<Vec3> {
+        let mut sums = vec![Vec3::ZERO; self.sites.tree.points.len()];
+        for ((subdomain, gradients), sign) in
+            self.fits.subdomains.iter().zip(&self.gradients).zip(signs)
+        {
+            for (&i, &g) in subdomain.support.iter().zip(gradients) {
+                sums[i as usize] += g * *sign;
+            }
+        }
+        let mut normals = self.site_normals(signs);
+        for (normal, sum) in normals.iter_mut().zip(sums) {
+            if normal.dot(sum) < 0.0 {
+                *normal = sum.normalize_or_zero();
+            }
+        }
+        normals
+    }
+
     /// Mean winding number of some sub-domains' sites around themselves, by area: ½ for what is closed and looks out, 0 for a
     /// flat sheet, −½ for what looks in.
     pub(crate) fn enclosed(&self, part: &[u32], signs: &[f32]) -> f64 {

@@ -95,20 +95,6 @@ pub(crate) fn edges(domains: &Domains) -> Vec<Edge> {
     edges
 }
 
-/// The edges with less weight the more the surface turns along them: times the squared cosine of the two normals. Where a wall
-/// stands on a disc, wall and disc pull at what lies at the foot with the same right, but it is a piece of one of the two sheets.
-pub(crate) fn along_sheets(domains: &Domains, edges: &[Edge]) -> Vec<Edge> {
-    let normals = domains.mean_normals(&vec![1.0; domains.len()]);
-    let along = |e: &Edge| {
-        let cos = normals[e.a as usize].dot(normals[e.b as usize]);
-        Edge {
-            weight: e.weight * cos * cos,
-            ..*e
-        }
-    };
-    edges.iter().map(along).collect()
-}
-
 /// E / Σ |w|.
 pub(crate) fn energy(edges: &[Edge], signs: &[f32]) -> f64 {
     let total: f64 = edges.iter().map(|e| e.weight.abs() as f64).sum();

@@ -49,9 +49,7 @@ use crate::orient::caves::turn_caves;
 use crate::orient::descent::{descend, settle};
 use crate::orient::domains::{Domains, mean_winding};
 use crate::orient::evidence::{Evidence, Known};
-use crate::orient::graph::{
-    Adjacency, Edge, adjacency, along_sheets, components, edges, energy, spanning_signs,
-};
+use crate::orient::graph::{Adjacency, Edge, adjacency, components, edges, energy, spanning_signs};
 use crate::orient::inverted::Inverted;
 use crate::orient::paper::{advancing_front, turn_outward};
 use crate::orient::parts::Parts;
@@ -139,7 +137,7 @@ pub fn orient(
     Ok(Signs {
         energy: energy(&edges, &solved.signs),
         energy_before: solved.energy_before,
-        normals: domains.site_normals(&solved.signs),
+        normals: domains.agreed_normals(&solved.signs),
         signs: solved.signs,
         kept: solve.kept,
         account,
@@ -196,7 +194,8 @@ impl Solve<'_> {
             parts = Parts::new(domains, self.edges, &mut signs);
         }
         let by_part = turn_parts(domains, &parts, &known, evidence, &mut signs);
-        settle(&along_sheets(domains, self.edges), &known.unary, &mut signs);
+        let along = parts.along_sheets(domains, self.edges, self.adjacency);
+        settle(&along, &known.unary, &mut signs);
         self.turn_caves(&known, &mut signs);
         let around = Inverted {
             domains,

@@ -88,6 +88,44 @@ impl Parts {
         self.members.count()
     }
 
+    /// The edges, with less weight the more the surface turns along them where two large parts meet in a T, times the squared
+    /// cosine of the two normals. Where a wall stands on a disc, both pull at what lies at the foot, but it goes on from one of them.
+    pub(crate) fn along_sheets(
+        &self,
+        domains: &Domains,
+        edges: &[Edge],
+        around: &Adjacency,
+    ) -> Vec<Edge> {
+        let is_large = |s: u32| self.members.of(self.of[s as usize]).len() >= SMALL;
+        let silent = self.ties.iter().filter(|t| t.strength == 0.0);
+        let mut silent: Vec<u64> = silent.map(|t| pack(t.a, t.b)).collect();
+        silent.sort_unstable();
+        let mut meet = vec![false; self.of.len()];
+        for e in edges {
+            let (p, q) = (self.of[e.a as usize], self.of[e.b as usize]);
+            let is_t = silent.binary_search(&pack(p.min(q), p.max(q))).is_ok();
+            if is_t && is_large(e.a) && is_large(e.b) {
+                meet[e.a as usize] = true;
+                meet[e.b as usize] = true;
+            }
+        }
+        let near: Vec<bool> = (0..meet.len() as u32)
+            .map(|s| meet[s as usize] || around.of(s).iter().any(|&(_, t)| meet[t as usize]))
+            .collect();
+        let normals = domains.mean_normals(&vec![1.0; domains.len()]);
+        let along = |e: &Edge| {
+            let (a, b) = (e.a as usize, e.b as usize);
+            let cos = normals[a].dot(normals[b]);
+            let weight = if near[a] || near[b] {
+                e.weight * cos * cos
+            } else {
+                e.weight
+            };
+            Edge { weight, ..*e }
+        };
+        edges.iter().map(along).collect()
+    }
+
     /// Gives a part the other sign.
     pub(crate) fn turn(&self, part: u32, signs: &mut [f32]) {
         for &s in self.members.of(part) {

@@ -9,7 +9,6 @@ export const FIELDS = {
   flip: { in: 'reconstruct', kind: 'flag', label: 'Flip', hint: 'The other side of everything is out.' },
   sharp: { in: 'reconstruct', kind: 'flag', label: 'Keep creases sharp', hint: 'Edges and corners stay; without it they are rounded.' },
   boundary: { in: 'reconstruct', kind: 'choice', label: 'Holes', hint: 'What happens where nothing was scanned.', choices: { auto: 'Close small ones', closed: 'Close all', open: 'Leave open' } },
-  scatter: { in: 'reconstruct', kind: 'choice', label: 'Scatter', hint: 'Points through which there is no surface: foliage, dust.', choices: { drop: 'Leave out of the mesh', keep: 'Keep' } },
 };
 
 /** The ways to say how much is kept; `start` is where a change to it begins. */
