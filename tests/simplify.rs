@@ -101,11 +101,11 @@ fn hostile_clouds_give_manifold_meshes() {
             if boundary != Boundary::Closed {
                 assert!(s.report.triangles <= 9000, "{name}, {boundary:?}");
             }
-            // Scattered points make folds, not the simplification.
+            // Scattered points make folds, not the simplification; mending what crosses makes or opens a few.
             let lattice = unsimplified(&positions, &params);
             let before = Flaws::of(&lattice.mesh.vertices, &lattice.mesh.triangles);
             assert!(
-                flaws.folded <= before.folded,
+                100 * flaws.folded <= 101 * before.folded,
                 "{name}: {flaws:?} {before:?}"
             );
             assert_eq!(flaws.topology, before.topology);

@@ -35,6 +35,8 @@ const APART: f32 = 2.5;
 const NOISY: f32 = 1.5;
 /// Places around a place that vote.
 const VOTES: usize = 12;
+/// Points, in those of the largest scale, from which on that is a small part of the scan, and not its shape.
+const ENOUGH: usize = 16;
 /// Less than this share of the places is no scatter.
 const LEAST: f64 = 0.05;
 /// Where more than this share of the places is scatter, the rest is no surface either.
@@ -43,7 +45,7 @@ const MOST: f64 = 0.95;
 /// Which of these places, on or between the points of the tree, lie in scatter. `noise` is its standard deviation across
 /// surfaces, `spacing` the median of the points'.
 pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -> Vec<bool> {
-    if tree.points.len() <= SCALES[0] {
+    if tree.points.len() < ENOUGH * SCALES[SCALES.len() - 1] {
         return vec![false; at.len()];
     }
     let noise2 = f64::from(noise).powi(2);

@@ -77,11 +77,38 @@ impl Sites {
         if !oriented {
             sites.mend_normals();
         }
-        sites.across = par::map(sites.spacing.len(), Vec::new, |i, steps| {
-            let within = (REACH * sites.spacing[i], noise);
-            across(&sites.tree, &sites.normals, i, within, steps)
-        });
+        sites.across = sites.opposite(noise);
         Ok(sites)
+    }
+
+    /// From each site to the opposite sheet, if one is near and half of the sites around it on its own sheet see theirs there, too.
+    /// At a corner a single one may see what is none.
+    fn opposite(&self, noise: f32) -> Vec<Vec3> {
+        /// Sites that are asked, one more than its neighbours.
+        const ASKED: usize = 13;
+        let found: Vec<Vec3> = par::map(self.spacing.len(), Vec::new, |i, steps| {
+            let within = (REACH * self.spacing[i], noise);
+            across(&self.tree, &self.normals, i, within, steps)
+        });
+        par::map(found.len(), Vec::new, |i, near| {
+            let own = found[i];
+            if own == Vec3::ZERO {
+                return own;
+            }
+            let p = self.tree.points[i];
+            self.tree.knn(p, ASKED, near);
+            near.retain(|n| {
+                let off = (self.tree.points[n.index as usize] - p).dot(own);
+                off.abs() < 0.5 * own.length_squared()
+            });
+            let sees = |n: &&Neighbor| found[n.index as usize].dot(own) > 0.0;
+            let agree = near.iter().filter(sees).count();
+            if 2 * agree > near.len() {
+                own
+            } else {
+                Vec3::ZERO
+            }
+        })
     }
 
     /// The spacing of a site; beside an opposite sheet that of its own alone, which looks nearly twice as dense with the other.

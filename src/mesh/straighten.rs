@@ -27,6 +27,8 @@ use glam::{DVec3, Vec3};
 const LENGTH: [f64; 3] = [4.0, 40.0, 14.0];
 /// Noise, in edges, under which every cell knows the crease best.
 const QUIET: f64 = 0.03;
+/// Noise, as a fraction of the diagonal, under which creases are straight already.
+const LEAST_NOISE: f64 = 1e-4;
 /// Largest move in edges.
 const FARTHEST: f64 = 1.0;
 /// Half of the length over which cells tell where a crease runs that others cut off, in edges.
@@ -50,7 +52,7 @@ pub(crate) fn straighten(
     (on_crease, at_end): (&mut [bool], &[bool]),
     (edge, noise): (f64, f64),
 ) {
-    if creases.is_empty() {
+    if creases.is_empty() || noise < LEAST_NOISE {
         return;
     }
     let around = vertex_triangles(mesh);

@@ -1,9 +1,9 @@
 //! What decided which side is out, as the report says it.
 
 use crate::orient::domains::Domains;
-use crate::orient::evidence::SOME;
 use crate::orient::graph::Edge;
 use crate::orient::solved::Solved;
+use crate::orient::source::SOME;
 use serde::Serialize;
 
 pub use crate::orient::source::Source;

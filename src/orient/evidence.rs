@@ -8,7 +8,7 @@ use crate::orient::camera;
 use crate::orient::domains::Domains;
 use crate::orient::graph::{Edge, energy};
 use crate::orient::parts::Parts;
-use crate::orient::source::Source;
+use crate::orient::source::{SOME, Source};
 use crate::reduce::shares::Shares;
 use glam::Vec3;
 
@@ -36,8 +36,6 @@ const CONSISTENT: f64 = 0.4;
 /// Share of what a guessed camera sees of each part that must show it one side. Frames have 0.95 to 1, one scan of an object
 /// in another frame 0.86.
 const ONE_SIDED: f32 = 0.8;
-/// What a source says of a sub-domain counts from here on.
-pub(crate) const SOME: f32 = 0.1;
 /// Mean winding number from which on a part is a body that "up" says nothing of.
 const BODY: f64 = 0.25;
 /// Weights of sources against an edge of full agreement. What was seen is right whatever neighbours say; normals of files are

@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+/// What a source says of a sub-domain counts from here on.
+pub(crate) const SOME: f32 = 0.1;
+
 /// What decides which side of a piece of surface is out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
