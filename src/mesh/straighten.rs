@@ -31,6 +31,10 @@ const QUIET: f64 = 0.03;
 const LEAST_NOISE: f64 = 1e-4;
 /// Largest move in edges.
 const FARTHEST: f64 = 1.0;
+/// Corners nearer than this, in edges, leave a cell's own crease as it is.
+const CORNER: f64 = 3.0;
+/// Cosine of the least turn to a crease that runs another way: 45°.
+const ONE_WAY: f32 = 0.7;
 /// Half of the length over which cells tell where a crease runs that others cut off, in edges.
 const GAP: f64 = 8.0;
 /// The surface turns from one side of a crease to the other where normals of neighbours do by more than this (cosine of 25°).
@@ -59,9 +63,10 @@ pub(crate) fn straighten(
     creases
         .iter()
         .for_each(|c| on_crease[c.vertex as usize] = true);
+    let near_corner = near_corners(creases, edge);
     let sides = par::map(creases.len(), Rings::default, |k, rings| {
         let known = (&*mesh, &around, &*on_crease);
-        let is_line = creases[k].along != Vec3::ZERO;
+        let is_line = !near_corner[k];
         is_line
             .then(|| sides::meet(&creases[k], known, edge, rings))
             .flatten()
@@ -97,7 +102,7 @@ pub(crate) fn straighten(
         .collect();
     fill_up(mesh, &around, (creases, &sides, &stays), edge);
     let length = length.max(GAP * edge);
-    let mut beside = cut_off(mesh, creases, &stays, (&tree, length, edge));
+    let mut beside = cut_off(mesh, (creases, &near_corner), &stays, (&tree, length, edge));
     beside.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.vertex.cmp(&b.1.vertex)));
     for (_, at) in beside {
         // One vertex a place along the crease is enough.
@@ -113,6 +118,23 @@ pub(crate) fn straighten(
         }
     }
     flip(mesh, &around, on_crease);
+}
+
+/// Which cells are at a corner, or see another crease nearby that runs another way: sides there are of more than two faces.
+fn near_corners(creases: &[OnCrease], edge: f64) -> Vec<bool> {
+    let points: Vec<Vec3> = creases.iter().map(|c| c.point).collect();
+    let tree = Octree::build(&points);
+    let reach = (CORNER * edge) as f32;
+    par::map(creases.len(), Vec::new, |k, found: &mut Vec<u32>| {
+        let own = &creases[k];
+        found.clear();
+        tree.gather(own.point - reach, own.point + reach, usize::MAX, found);
+        let other = |&j: &u32| {
+            let along = creases[tree.order[j as usize] as usize].along;
+            along.dot(own.along).abs() < ONE_WAY
+        };
+        own.along == Vec3::ZERO || found.iter().any(other)
+    })
 }
 
 /// Moves the vertices next to those on creases to the sides from which a crease was rounded off.
@@ -149,7 +171,7 @@ fn fill_up(
 /// and where it runs, between cells that did find it.
 fn cut_off(
     mesh: &Mesh,
-    creases: &[OnCrease],
+    (creases, near_corner): (&[OnCrease], &[bool]),
     stays: &[bool],
     (tree, length, edge): (&Octree, f64, f64),
 ) -> Vec<(f32, OnCrease)> {
@@ -168,10 +190,11 @@ fn cut_off(
     let found = par::map(free.len(), Vec::new, |k, found| {
         let vertex = free[k];
         let point = mesh.vertices[vertex as usize];
-        let nearest = &creases[tree.order[tree.nearest(point).index as usize] as usize];
-        if nearest.along == Vec3::ZERO {
+        let nearest = tree.order[tree.nearest(point).index as usize] as usize;
+        if near_corner[nearest] {
             return None;
         }
+        let nearest = &creases[nearest];
         let own = OnCrease {
             vertex,
             point,
