@@ -120,14 +120,14 @@ fn fifty_bad_clouds_are_doubted() {
             (
                 "crown",
                 "scatter",
-                ball_and(1200, 600, seed, |rng| crown + in_ball(rng)),
+                ball_and(2400, 1200, seed, |rng| crown + in_ball(rng)),
                 auto(),
             ),
             ("dust", "scatter", ball_and(1500, 400, seed, dust), auto()),
             (
                 "kept crown",
                 "scatter",
-                ball_and(1200, 600, seed, |rng| crown + in_ball(rng)),
+                ball_and(2400, 1200, seed, |rng| crown + in_ball(rng)),
                 SurfaceParams {
                     scatter: Scatter::Keep,
                     ..auto()

@@ -45,7 +45,7 @@ const MOST: f64 = 0.95;
 /// Which of these places, on or between the points of the tree, lie in scatter. `noise` is its standard deviation across
 /// surfaces, `spacing` the median of the points'.
 pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -> Vec<bool> {
-    if tree.points.len() < ENOUGH * SCALES[SCALES.len() - 1] {
+    if tree.points.len() <= SCALES[0] {
         return vec![false; at.len()];
     }
     let noise2 = f64::from(noise).powi(2);
@@ -90,10 +90,14 @@ fn is_alone(tree: &Octree, p: Vec3, noise2: [f64; 2], found: &mut Vec<Neighbor>)
     if in_clump(found) {
         return true;
     }
+    let largest = SCALES[SCALES.len() - 1];
+    if tree.points.len() < ENOUGH * largest {
+        return false;
+    }
     if !is_bulk(tree, p, found, (BULK.0, noise2[0])) {
         return false;
     }
-    tree.knn(p, SCALES[SCALES.len() - 1], found);
+    tree.knn(p, largest, found);
     let scale = |&k: &usize| is_bulk(tree, p, &found[..k.min(found.len())], (BULK.0, noise2[0]));
     fills(found) && is_bulk(tree, p, found, (BULK.1, noise2[1])) && SCALES[1..3].iter().all(scale)
 }

@@ -268,7 +268,7 @@ mod tests {
             &mut mesh,
             &[on(Vec3::new(0.3, 0.0, 0.2))],
             (&mut [false; 5], &[false; 5]),
-            (1.0, 0.0),
+            (1.0, LEAST_NOISE),
         );
         assert_eq!(mesh.vertices[0], Vec3::new(0.3, 0.0, 0.2));
         let mut mesh = fan(Vec3::ZERO);
@@ -276,7 +276,7 @@ mod tests {
             &mut mesh,
             &[on(Vec3::new(1.4, 0.0, 0.0))],
             (&mut [false; 5], &[false; 5]),
-            (2.0, 0.0),
+            (2.0, LEAST_NOISE),
         );
         assert_eq!(mesh.vertices[0], Vec3::new(0.7, 0.0, 0.0));
     }
