@@ -38,8 +38,8 @@ pub(crate) fn flip(mesh: &mut Mesh, around: &VertexTriangles, on_crease: &[bool]
         let Some(beyond) = around.of(a).iter().copied().find(is_beyond) else {
             continue;
         };
-        let opposite = mesh.triangles[beyond as usize].into_iter();
-        let Some(s) = opposite.filter(|&v| v != a && v != b).last() else {
+        let mut opposite = mesh.triangles[beyond as usize].into_iter();
+        let Some(s) = opposite.rfind(|&v| v != a && v != b) else {
             continue;
         };
         let has_s = |&u: &u32| mesh.triangles[u as usize].contains(&s);

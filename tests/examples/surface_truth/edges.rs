@@ -67,7 +67,8 @@ fn true_edges(truth: &Truth) -> Vec<[DVec3; 2]> {
         return Vec::new();
     };
     let key = |p: DVec3| p.to_array().map(|x| (x * 1e6).round() as i64);
-    let mut sides: BTreeMap<[[i64; 3]; 2], Vec<(DVec3, [DVec3; 2])>> = BTreeMap::new();
+    type Side = (DVec3, [DVec3; 2]);
+    let mut sides: BTreeMap<[[i64; 3]; 2], Vec<Side>> = BTreeMap::new();
     for t in facets {
         let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize();
         for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
