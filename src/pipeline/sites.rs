@@ -19,7 +19,7 @@ use glam::Vec3;
 const MIN_REDUCED: usize = 64;
 
 /// Thin walls have more points than were asked for where those would be this many times as many.
-const MORE: f64 = 1.1;
+const MORE: f64 = 1.5;
 /// Where they are more than this share of all, all are fitted.
 const MOST: f64 = 0.7;
 
