@@ -10,7 +10,8 @@
 //!
 //! Flatness is the surface variation of Pauly, Gross, Kobbelt, "Efficient simplification of point-sampled surfaces", 2002.
 //!
-//! **Cost**: a query of 24 neighbours a place; of the larger scales where these fill space.
+//! **Cost**: a query of 24 neighbours for one place of eight; where some are scatter, for all, and of the larger scales where these
+//! fill space.
 
 use crate::base::linalg::{outer, sym_eigen};
 use crate::base::par;
@@ -39,6 +40,8 @@ const VOTES: usize = 12;
 const ENOUGH: usize = 16;
 /// Less than this share of the places is no scatter.
 const LEAST: f64 = 0.05;
+/// One of so many places is looked at first.
+const STRIDE: usize = 8;
 /// Where more than this share of the places is scatter, the rest is no surface either.
 const MOST: f64 = 0.95;
 
@@ -51,12 +54,20 @@ pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -
     let noise2 = f64::from(noise).powi(2);
     // What looks like noise of more than that may be a volume: there only the largest scale reaches beyond it.
     let near2 = if noise < NOISY * spacing { noise2 } else { 0.0 };
-    let mut alone: Vec<bool> = par::map(at.len(), Vec::new, |i, found| {
-        is_alone(tree, at[i], [near2, noise2], found)
-    });
-    if !alone.contains(&true) {
-        return alone;
+    let look = |stride: usize| -> Vec<bool> {
+        par::map(at.len().div_ceil(stride), Vec::new, |i, found| {
+            is_alone(tree, at[i * stride], [near2, noise2], found)
+        })
+    };
+    let share = |marked: &[bool]| {
+        let count = marked.iter().filter(|&&is| is).count();
+        count as f64 / marked.len().max(1) as f64
+    };
+    // Most scans have none, which a part of the places tells.
+    if share(&look(STRIDE)) < LEAST / 4.0 {
+        return vec![false; at.len()];
     }
+    let mut alone = look(1);
     let places = Octree::build(at);
     let vote = |marked: &[bool]| {
         par::map(at.len(), Vec::new, |i, found| {
@@ -72,7 +83,7 @@ pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -
     }
     let mut scatter = vote(&alone);
     // So little is a corner or an uneven part of a surface.
-    if (scatter.iter().filter(|&&is| is).count() as f64) < LEAST * at.len() as f64 {
+    if share(&scatter) < LEAST {
         scatter.fill(false);
     }
     scatter

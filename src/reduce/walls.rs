@@ -8,6 +8,8 @@ use std::ops::Range;
 
 /// Points that are asked together, for one of them.
 const GROUP: usize = 12;
+/// One of so many groups is asked first.
+const STRIDE: usize = 8;
 /// Share of all reduced points that thin parts may take, at most, beyond what they would have anyway.
 const MOST: f64 = 0.75;
 /// Walls ask for more points than there are when they are thinner than twice this share of the spacing: thicker ones are as good
@@ -24,7 +26,7 @@ fn limits(
     wanted: impl Fn(usize) -> f32 + Sync,
 ) -> Option<Vec<f32>> {
     let groups: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= GROUP);
-    let found = par::map(groups.len(), Vec::new, |g, steps| {
+    let limit_of = |g: usize, steps: &mut Vec<f32>| {
         let middle = groups[g].start + groups[g].len() / 2;
         let spacing = wanted(middle);
         // Half of what is at most as far as that asks for less than the wanted spacing.
@@ -35,7 +37,15 @@ fn limits(
         } else {
             f32::INFINITY
         }
+    };
+    // Most scans have no thin parts, which some of the groups tell.
+    let some = par::map(groups.len().div_ceil(STRIDE), Vec::new, |i, steps| {
+        limit_of(i * STRIDE, steps)
     });
+    if some.iter().all(|limit| limit.is_infinite()) {
+        return None;
+    }
+    let found = par::map(groups.len(), Vec::new, limit_of);
     if found.iter().all(|limit| limit.is_infinite()) {
         return None;
     }
