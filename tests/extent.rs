@@ -2,12 +2,11 @@
 
 mod common;
 
-use common::{Shape, points};
+use common::{Shape, mesh, points};
 use glam::{DVec3, Vec3};
 use pointweave::base::params::{Boundary, MaxHole};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
-use pointweave::cloud::octree::Octree;
 use pointweave::report::{area, volume};
 use pointweave::{Cloud, Error, ReduceParams, Surface, SurfaceParams, reconstruct, reduce};
 
@@ -33,20 +32,9 @@ fn size(s: &Surface) -> (f64, f64) {
     )
 }
 
-/// Share of a mesh's area that is farther than 2 % of the diagonal from every point.
 fn far(s: &Surface, positions: &[f64]) -> f64 {
     let cloud = Cloud::from_f64(positions).unwrap();
-    let tree = Octree::build(&cloud.points);
-    let (mut all, mut far) = (0.0, 0.0);
-    for t in &s.mesh.triangles {
-        let [a, b, c] = t.map(|v| s.mesh.vertices[v as usize]);
-        let size = f64::from((b - a).cross(c - a).length());
-        all += size;
-        if tree.nearest((a + b + c) / 3.0).distance2 > 0.02 * 0.02 {
-            far += size;
-        }
-    }
-    far / all
+    mesh::far(&s.mesh.vertices, &s.mesh.triangles, &cloud.points)
 }
 
 /// A wall around z from -1 to 1, of radius `radius` at each height, with a floor where `floor` says so.

@@ -52,12 +52,15 @@ function planeAround(geometry, face) {
   const plane = across.clone().normalize();
   if (!geometry.boundingSphere) geometry.computeBoundingSphere();
   const reach = REACH * (geometry.boundingSphere?.radius ?? 0);
+  /** @type {Vector3[]} */
+  const near = [];
+  for (let i = 0; i < (index ?? positions).count / 3; i++) {
+    read(i);
+    if (center.distanceTo(middle) <= reach) near.push(across.clone());
+  }
   for (let round = 0; round < ROUNDS; round++) {
     const sum = new Vector3();
-    for (let i = 0; i < (index ?? positions).count / 3; i++) {
-      read(i);
-      if (center.distanceTo(middle) <= reach && across.dot(plane) >= ALIKE * across.length()) sum.add(across);
-    }
+    for (const one of near) if (one.dot(plane) >= ALIKE * one.length()) sum.add(one);
     if (sum.lengthSq() > 0) plane.copy(sum).normalize();
   }
   return plane;

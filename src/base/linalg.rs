@@ -1,4 +1,4 @@
-//! 3×3 symmetric eigen-decomposition, the inner loop of every normal.
+//! 3×3 symmetric eigen-decomposition, the inner loop of every normal, and how points spread.
 
 use crate::base::lanes::Lanes;
 use glam::DVec3;
@@ -10,6 +10,45 @@ pub struct SymEigen {
     pub values: [f64; 3],
     /// Unit and mutually orthogonal; `vectors[0]` of a covariance is the normal.
     pub vectors: [DVec3; 3],
+}
+
+/// How some points spread.
+#[derive(Debug, Clone, Copy)]
+pub struct Spread {
+    /// How many they are.
+    pub count: f64,
+    /// Their mean.
+    pub mean: DVec3,
+    /// Of Σ (p − mean) (p − mean)ᵀ: variances times [`Spread::count`], with their directions.
+    pub eigen: SymEigen,
+}
+
+impl Spread {
+    /// Of these points, which are asked for twice.
+    pub fn of(points: impl Iterator<Item = DVec3> + Clone) -> Spread {
+        let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+        for p in points.clone() {
+            sum += p;
+            count += 1.0;
+        }
+        let mean = sum / count;
+        let mut squares = [0.0; 6];
+        for p in points {
+            for (sum, product) in squares.iter_mut().zip(outer(p - mean)) {
+                *sum += product;
+            }
+        }
+        Spread {
+            count,
+            mean,
+            eigen: sym_eigen(&squares),
+        }
+    }
+
+    /// Variances along the eigenvectors, ascending.
+    pub fn variances(&self) -> [f64; 3] {
+        self.eigen.values.map(|value| value / self.count)
+    }
 }
 
 /// v vᵀ as `[xx, xy, xz, yy, yz, zz]`.

@@ -112,6 +112,12 @@ impl Octree {
         tree
     }
 
+    /// Of every node the largest of its points' values, in the tree's order; at least 0.
+    pub fn largest(&self, values: &[f32]) -> Vec<f32> {
+        let of = |node: &Node| values[node.range()].iter().copied().fold(0.0, f32::max);
+        self.nodes.iter().map(of).collect()
+    }
+
     /// The points in Morton order, without the tree.
     pub fn into_points(self) -> Vec<Vec3> {
         self.points

@@ -9,11 +9,11 @@
 //! 3. The levels are steps where they show terraces, as in [`crate::features::steps`].
 //! 4. A point's step is the median gap around its level; steps that grow count by their mean square.
 
-use crate::base::linalg::{outer, sym_eigen};
+use crate::base::linalg::Spread;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::noise::quantile;
-use crate::features::terraces::{LEVEL, LEVELS, NEAR, PATCH, SAMPLE, TERRACES, asked};
+use crate::features::terraces::{self, LEVEL, LEVELS, PATCH, SAMPLE, asked};
 use glam::{DVec3, Vec3};
 
 /// Depths nearer than this (unit frame) are of one level: what single precision rounds, and files of some digits do.
@@ -119,25 +119,13 @@ impl Levels {
 
     /// Whether the points of one level cover patches, on some levels.
     fn have_terraces(&self, tree: &Octree, depth: &Depth) -> bool {
-        let mut found: Vec<Neighbor> = Vec::new();
         let level_of = |i: usize| depth.of(tree, i).map(|d| self.nearest(d));
-        let (mut all, mut patches, mut levels) = (0.0, 0.0, Vec::new());
-        for i in asked(tree) {
-            let Some(level) = level_of(i) else { continue };
-            tree.knn(tree.points[i], NEAR, &mut found);
-            let of_level = found.iter().map(|n| n.index as usize);
+        terraces::are_there(tree, level_of, |_, level, near| {
+            let of_level = near.iter().map(|n| n.index as usize);
             let of_level = of_level.filter(|&j| level_of(j) == Some(level));
             let terrace: Vec<DVec3> = of_level.map(|j| tree.points[j].as_dvec3()).collect();
-            let [_, middle, long] = spread(&terrace).0;
-            all += 1.0;
-            if terrace.len() >= LEVEL && middle >= PATCH * long && long > 0.0 {
-                patches += 1.0;
-                levels.push(level);
-            }
-        }
-        levels.sort_unstable();
-        levels.dedup();
-        patches >= TERRACES * all && levels.len() >= LEVELS
+            terrace.len() >= LEVEL && is_patch(&Spread::of(terrace.iter().copied()))
+        })
     }
 
     /// Root mean square of the points' steps.
@@ -147,18 +135,10 @@ impl Levels {
     }
 }
 
-/// Eigenvalues of the covariance of some points, the least first, and the axis of the least.
-fn spread(points: &[DVec3]) -> ([f64; 3], DVec3) {
-    let count = points.len().max(1) as f64;
-    let mean = points.iter().sum::<DVec3>() / count;
-    let mut covariance = [0.0; 6];
-    for p in points {
-        for (sum, product) in covariance.iter_mut().zip(outer(*p - mean)) {
-            *sum += product / count;
-        }
-    }
-    let eigen = sym_eigen(&covariance);
-    (eigen.values, eigen.vectors[0])
+/// Whether points vary in two directions.
+fn is_patch(spread: &Spread) -> bool {
+    let [_, middle, long] = spread.eigen.values;
+    middle >= PATCH * long && long > 0.0
 }
 
 /// The axis that exactly flat neighbourhoods look along, where many do.
@@ -166,13 +146,12 @@ fn terrace_axis(tree: &Octree) -> Option<DVec3> {
     let mut found: Vec<Neighbor> = Vec::new();
     let flat = |i: usize| {
         tree.knn(tree.points[i], FLAT.0, &mut found);
-        let near: Vec<DVec3> = found
+        let near = found
             .iter()
-            .map(|n| tree.points[n.index as usize].as_dvec3())
-            .collect();
-        let ([thin, middle, long], normal) = spread(&near);
-        let is_flat = thin.max(0.0).sqrt() <= FLAT.1 && middle >= PATCH * long && long > 0.0;
-        is_flat.then_some(normal)
+            .map(|n| tree.points[n.index as usize].as_dvec3());
+        let spread = Spread::of(near);
+        let thin = spread.variances()[0].max(0.0).sqrt();
+        (thin <= FLAT.1 && is_patch(&spread)).then_some(spread.eigen.vectors[0])
     };
     let all = asked(tree).count();
     let normals: Vec<DVec3> = asked(tree).filter_map(flat).collect();

@@ -11,7 +11,7 @@
 //!
 //! By place: a sweep is thinned where its lines are far apart, and nowhere else.
 
-use crate::base::linalg::{outer, sym_eigen};
+use crate::base::linalg::{Spread, outer, sym_eigen};
 use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
@@ -22,8 +22,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// Least ratio of the second eigenvalue to the first of neighbours that spread in two directions.
 const SPREAD: f64 = 0.25;
-/// Neighbours that are asked at first, and then where these are on a line.
-const NEIGHBORS: [usize; 3] = [64, 160, 512];
+/// Neighbours that are asked at first, and then where these are on a line. Even points need no more than the first.
+const NEIGHBORS: [usize; 4] = [24, 64, 160, 512];
 /// Neighbours that are looked at for their spread, at least.
 const FEWEST: usize = 8;
 /// Points of a line around one that tell the noise.
@@ -53,8 +53,6 @@ pub(crate) struct Thinned {
     pub(crate) place_of: Vec<u32>,
     /// Share of the points that are on lines.
     share: f32,
-    /// Standard deviation of the points' noise.
-    noise: f32,
 }
 
 impl Thinned {
@@ -95,18 +93,21 @@ impl Thinned {
             places: sums.iter().map(|(sum, n)| (*sum / *n).as_vec3()).collect(),
             place_of,
             share,
-            noise: noise_of_lines(tree),
         }
     }
 
-    /// What is left of the noise in the mean of a place, mostly.
-    pub(crate) fn noise_of_places(&self) -> f32 {
-        self.noise * (self.places.len() as f32 / self.place_of.len() as f32).sqrt()
+    /// What is left of the points' `noise` in the mean of a place, mostly.
+    pub(crate) fn noise_of_places(&self, noise: f32) -> f32 {
+        noise * (self.places.len() as f32 / self.place_of.len() as f32).sqrt()
     }
 
     /// What the points know from what was measured of the places, whose octree is `places`: a point has its share of its
-    /// place's area, and the normal and the offset that the places around it tell.
-    pub(crate) fn features(&self, tree: &Octree, places: &Octree, of: &Features) -> Features {
+    /// place's area, and the normal and the offset that the places around it tell. `noise` is that of the points.
+    pub(crate) fn features(
+        &self,
+        (tree, noise): (&Octree, f32),
+        (places, of): (&Octree, &Features),
+    ) -> Features {
         let mut at = vec![0u32; places.order.len()];
         for (k, &place) in places.order.iter().enumerate() {
             at[place as usize] = k as u32;
@@ -115,7 +116,6 @@ impl Thinned {
         for &place in &self.place_of {
             counts[place as usize] += 1.0;
         }
-        let noise = self.noise;
         let spacing_of = |i: usize| {
             let place = self.place_of[i] as usize;
             of.spacing[at[place] as usize] / counts[place].sqrt()
@@ -213,7 +213,7 @@ fn reach(tree: &Octree, i: usize, found: &mut Vec<Neighbor>) -> Option<(usize, f
 
 /// Noise of points on lines: what they stand off the parabola through those next to them on their line. Whatever bends the
 /// line more slowly is detail.
-fn noise_of_lines(tree: &Octree) -> f32 {
+pub(crate) fn noise(tree: &Octree) -> f32 {
     let n = tree.points.len();
     let step = n.div_ceil(ASKED).max(1);
     let off = par::map(
@@ -226,15 +226,7 @@ fn noise_of_lines(tree: &Octree) -> f32 {
                 let each = found.iter();
                 each.map(|n| (tree.points[n.index as usize] - p).as_dvec3())
             };
-            let count = found.len() as f64;
-            let mean = near().sum::<DVec3>() / count;
-            let mut covariance = [0.0; 6];
-            for d in near() {
-                for (sum, product) in covariance.iter_mut().zip(outer(d - mean)) {
-                    *sum += product;
-                }
-            }
-            let eigen = sym_eigen(&covariance);
+            let eigen = Spread::of(near()).eigen;
             let along = eigen.vectors[2];
             let scale = eigen.values[2].sqrt().max(f64::MIN_POSITIVE);
             // The parabola at the point itself, where s = 0.

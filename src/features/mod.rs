@@ -100,9 +100,10 @@ impl Features {
             return Features::measure_even(tree, (steps, f32::INFINITY), progress);
         };
         let places = Octree::build(&thinned.places);
-        let noise = (steps, thinned.noise_of_places().max(steps));
-        let of_places = Features::measure_even(&places, noise, progress)?;
-        Ok(thinned.features(tree, &places, &of_places))
+        let noise = lines::noise(tree);
+        let most = thinned.noise_of_places(noise).max(steps);
+        let of_places = Features::measure_even(&places, (steps, most), progress)?;
+        Ok(thinned.features((tree, noise), (&places, &of_places)))
     }
 
     /// Of points whose nearest are around them. Their noise is at least that of `steps` and no more than `most`.

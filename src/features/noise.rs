@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use nalgebra::{SMatrix, SVector};
 
-use crate::base::linalg::{SymEigen, sym_eigen};
+use crate::base::linalg::Spread;
 use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
@@ -187,7 +187,11 @@ struct Quadric {
 impl Quadric {
     /// `None` for points on a line or at one place; the plane alone with fewer than eight points.
     fn new(positions: impl Iterator<Item = DVec3> + Clone, radius: f64) -> Option<Quadric> {
-        let (mean, eigen, points) = covariance(positions.clone());
+        let Spread {
+            count: points,
+            mean,
+            eigen,
+        } = Spread::of(positions.clone());
         // Fewer than three points, or all on a line, have no normal.
         if eigen.values[1] <= 1e-12 * eigen.values[2] || radius == 0.0 {
             return None;
@@ -244,23 +248,4 @@ impl Quadric {
         );
         (z - height) * self.radius / (1.0 + dx * dx + dy * dy).sqrt()
     }
-}
-
-/// Mean, eigen-decomposition of the covariance, and count.
-fn covariance(positions: impl Iterator<Item = DVec3> + Clone) -> (DVec3, SymEigen, f64) {
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
-    for p in positions.clone() {
-        sum += p;
-        count += 1.0;
-    }
-    let mean = sum / count;
-    let mut m = [0.0; 6];
-    for p in positions {
-        let d = p - mean;
-        let products = crate::base::linalg::outer(d);
-        for (sum, product) in m.iter_mut().zip(products) {
-            *sum += product;
-        }
-    }
-    (mean, sym_eigen(&m), count)
 }

@@ -13,11 +13,11 @@
 //! **Cost**: a query of 24 neighbours for one place of eight; where some are scatter, for all, and of the larger scales where these
 //! fill space.
 
-use crate::base::linalg::{outer, sym_eigen};
+use crate::base::linalg::Spread;
 use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// Neighbours at each scale.
 const SCALES: [usize; 4] = [24, 48, 96, 192];
@@ -59,10 +59,6 @@ pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -
             is_alone(tree, at[i * stride], [near2, noise2], found)
         })
     };
-    let share = |marked: &[bool]| {
-        let count = marked.iter().filter(|&&is| is).count();
-        count as f64 / marked.len().max(1) as f64
-    };
     // Most scans have none, which a part of the places tells.
     if share(&look(STRIDE)) < LEAST / 4.0 {
         return vec![false; at.len()];
@@ -91,8 +87,13 @@ pub(crate) fn places(tree: &Octree, at: &[Vec3], (noise, spacing): (f32, f32)) -
 
 /// Whether so much is scatter that the rest is no surface either.
 pub(crate) fn is_all(scatter: &[bool]) -> bool {
-    let count = scatter.iter().filter(|&&is| is).count();
-    count as f64 > MOST * scatter.len() as f64
+    share(scatter) > MOST
+}
+
+/// Share of those that are marked.
+fn share(marked: &[bool]) -> f64 {
+    let count = marked.iter().filter(|&&is| is).count();
+    count as f64 / marked.len().max(1) as f64
 }
 
 /// Whether a place, looked at alone, lies in a volume or in a clump.
@@ -128,16 +129,7 @@ fn in_clump(found: &[Neighbor]) -> bool {
 /// Whether these neighbours of `p` lie neither flat, but for the noise, nor along a line.
 fn is_bulk(tree: &Octree, p: Vec3, found: &[Neighbor], (bulk, noise2): (f64, f64)) -> bool {
     let from_here = |n: &Neighbor| (tree.points[n.index as usize] - p).as_dvec3();
-    let count = found.len() as f64;
-    let mean = found.iter().map(from_here).sum::<DVec3>() / count;
-    let mut covariance = [0.0; 6];
-    for n in found {
-        let products = outer(from_here(n) - mean);
-        for (sum, product) in covariance.iter_mut().zip(products) {
-            *sum += product / count;
-        }
-    }
-    let [thin, middle, long] = sym_eigen(&covariance).values;
+    let [thin, middle, long] = Spread::of(found.iter().map(from_here)).variances();
     thin - noise2 > bulk * (thin + middle + long) && middle > LINE * long
 }
 
@@ -145,10 +137,10 @@ fn is_bulk(tree: &Octree, p: Vec3, found: &[Neighbor], (bulk, noise2): (f64, f64
 mod tests {
     use super::*;
     use crate::base::rng::Rng;
+    use glam::DVec3;
 
-    fn share(points: &[Vec3], noise: f32) -> f64 {
-        let scatter = places(&Octree::build(points), points, (noise, 6e-3));
-        scatter.iter().filter(|&&is| is).count() as f64 / points.len() as f64
+    fn share_of(points: &[Vec3], noise: f32) -> f64 {
+        share(&places(&Octree::build(points), points, (noise, 6e-3)))
     }
 
     fn direction(rng: &mut Rng) -> DVec3 {
@@ -182,13 +174,13 @@ mod tests {
                 [0.4, 0.3, 0.004],
             ] {
                 let points = boxed(20_000, half, noise, &mut rng);
-                let share = share(&points, noise as f32);
+                let share = share_of(&points, noise as f32);
                 assert!(share < 1e-2, "{half:?} with {noise}: {share}");
             }
             let ball: Vec<Vec3> = (0..2000)
                 .map(|_| (direction(&mut rng) * (0.4 + noise * rng.normal())).as_vec3())
                 .collect();
-            assert_eq!(share(&ball, noise as f32), 0.0);
+            assert_eq!(share_of(&ball, noise as f32), 0.0);
         }
         // Small balls, far apart: 120 points each.
         let balls: Vec<Vec3> = (0..6000)
@@ -197,7 +189,7 @@ mod tests {
                 (center + direction(&mut rng) * 0.005).as_vec3()
             })
             .collect();
-        assert_eq!(share(&balls, 0.0), 0.0);
+        assert_eq!(share_of(&balls, 0.0), 0.0);
     }
 
     #[test]
@@ -216,10 +208,7 @@ mod tests {
                 (crown + direction(&mut rng) * 0.2 * libm::cbrt(rng.uniform())).as_vec3()
             }));
         let scatter = places(&Octree::build(&points), &points, (0.0, 6e-3));
-        let share = |range: std::ops::Range<usize>| {
-            let all = range.len() as f64;
-            scatter[range].iter().filter(|&&is| is).count() as f64 / all
-        };
+        let share = |range: std::ops::Range<usize>| share(&scatter[range]);
         assert!(share(0..6000) < 0.01, "{}", share(0..6000));
         assert!(share(6000..7200) > 0.99, "{}", share(6000..7200));
         assert!(share(7200..10_200) > 0.85, "{}", share(7200..10_200));

@@ -13,7 +13,7 @@ use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::depths;
 use crate::features::noise::quantile;
-use crate::features::terraces::{LEVEL, LEVELS, NEAR, PATCH, SAMPLE, TERRACES, asked};
+use crate::features::terraces::{self, LEVEL, PATCH, SAMPLE};
 use glam::{DVec2, Vec3};
 
 /// Values nearer than this (unit frame) are one level: some times what single precision rounds.
@@ -64,27 +64,16 @@ fn step(tree: &Octree, axis: usize) -> Option<f32> {
 
 /// Whether the points of one level cover patches.
 fn has_terraces(tree: &Octree, axis: usize, step: f32) -> bool {
-    let mut found: Vec<Neighbor> = Vec::new();
-    let (mut all, mut patches, mut levels) = (0.0, 0.0, Vec::new());
-    for i in asked(tree) {
-        let p = tree.points[i];
-        tree.knn(p, NEAR, &mut found);
-        let level = found
-            .iter()
-            .map(|near| tree.points[near.index as usize] - p);
+    let level_of = |i: usize| Some((tree.points[i][axis] / step).round() as i32);
+    terraces::are_there(tree, level_of, |i, _, near| {
+        let from_here = |n: &Neighbor| tree.points[n.index as usize] - tree.points[i];
+        let level = near.iter().map(from_here);
         let level = level.filter(|d| d[axis].abs() < step / 2.0);
         let flat: Vec<DVec2> = level
             .map(|d| DVec2::new(d[(axis + 1) % 3].into(), d[(axis + 2) % 3].into()))
             .collect();
-        all += 1.0;
-        if flat.len() >= LEVEL && is_patch(&flat) {
-            patches += 1.0;
-            levels.push((p[axis] / step).round() as i32);
-        }
-    }
-    levels.sort_unstable();
-    levels.dedup();
-    patches >= TERRACES * all && levels.len() >= LEVELS
+        flat.len() >= LEVEL && is_patch(&flat)
+    })
 }
 
 /// Whether points in a plane vary in two directions.

@@ -1,8 +1,8 @@
 //! LAS 1.0 to 1.4 and LAZ (ASPRS; LASzip by Martin Isenburg), by the crates `las` and `laz`. Coordinates are the file's, scale
 //! and offset applied in double precision. Attributes are `intensity` and `classification`, the other fields where one is not 0, and
 //! the extra bytes that the file describes, scaled. Colours of 16 bits become 8, and those that are all 0 are none. Times
-//! are counted from the first point's, because single precision does not hold them. A header that says 0 points, as loggers leave it that never finish, is not believed where
-//! points follow.
+//! are counted from the first point's, because single precision does not hold them. A header that says 0 points, as loggers leave
+//! it that never finish, is not believed where points follow.
 //!
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.

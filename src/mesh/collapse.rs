@@ -242,21 +242,29 @@ fn cosine_if_negative(a: DVec3, b: DVec3) -> f64 {
     }
 }
 
+/// Squared sine of the least angle under which a triangle is a sliver: 5°.
+pub(crate) const SLIVER_SINE2: f64 = 0.0076;
+
 /// What tells whether a triangle is well shaped.
-struct Shape {
+pub(crate) struct Shape {
     /// Normal, as long as twice the area.
-    cross: DVec3,
+    pub(crate) cross: DVec3,
     /// Product of the squares of the two longest sides: the least angle is between them, and its squared sine is
     /// `cross² / longest2`.
     longest2: f64,
 }
 
 impl Shape {
-    fn of([a, b, c]: [DVec3; 3]) -> Shape {
+    pub(crate) fn of([a, b, c]: [DVec3; 3]) -> Shape {
         let [p, q, r] = [b - a, c - b, a - c].map(DVec3::length_squared);
         Shape {
             cross: (b - a).cross(c - a),
             longest2: p.max(q) * p.min(q).max(r),
         }
+    }
+
+    /// Squared sine of the least angle.
+    pub(crate) fn sine2(&self) -> f64 {
+        self.cross.length_squared() / self.longest2.max(f64::MIN_POSITIVE)
     }
 }

@@ -68,7 +68,11 @@ pub(crate) fn mend(mesh: &mut Mesh) -> usize {
     }
     mesh.vertices = best;
     for v in (0..mesh.vertices.len() as u32).filter(|&v| moved[v as usize]) {
-        let sum: DVec3 = around.of(v).iter().map(|&t| cross(mesh, t)).sum();
+        let sum: DVec3 = around
+            .of(v)
+            .iter()
+            .map(|&t| mesh.cross(mesh.triangles[t as usize]))
+            .sum();
         if sum != DVec3::ZERO {
             mesh.normals[v as usize] = sum.normalize().as_vec3();
         }
@@ -110,11 +114,6 @@ fn mean_of_neighbours(mesh: &Mesh, v: u32, triangles: &[u32]) -> Vec3 {
     (others / (2 * triangles.len()) as f64).as_vec3()
 }
 
-fn cross(mesh: &Mesh, t: u32) -> DVec3 {
-    let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.vertices[v as usize].as_dvec3());
-    (b - a).cross(c - a)
-}
-
 /// Triangles with their boxes, in the order of an octree of their centres.
 struct Boxes {
     tree: Octree,
@@ -139,11 +138,7 @@ impl Boxes {
             (hi - center).max(center - lo).max_element()
         };
         let beyond: Vec<f32> = (0..boxes.len()).map(beyond).collect();
-        let of_node = |range: std::ops::Range<usize>| beyond[range].iter().copied();
-        let reach = tree.nodes.iter();
-        let reach = reach
-            .map(|node| of_node(node.range()).fold(0.0, f32::max))
-            .collect();
+        let reach = tree.largest(&beyond);
         Boxes { tree, boxes, reach }
     }
 
@@ -208,28 +203,41 @@ fn cross_each_other(mesh: &Mesh, a: u32, b: u32) -> bool {
     if common > 1 {
         return false;
     }
-    pierces(mesh, a, b) || pierces(mesh, b, a)
+    let of_a = sides(mesh, a, b);
+    // Wholly on one side, it meets the other's plane at a common corner at most.
+    let apart = 3 - common;
+    if [1.0, -1.0]
+        .map(|s| of_a.iter().filter(|x| s * **x > 0.0).count())
+        .contains(&apart)
+    {
+        return false;
+    }
+    pierces(mesh, (a, of_a), b) || pierces(mesh, (b, sides(mesh, b, a)), a)
 }
 
-/// Whether an edge of `a` goes through the inside of `b`; of corners that both have none does.
-fn pierces(mesh: &Mesh, a: [u32; 3], b: [u32; 3]) -> bool {
-    let at = |v: u32| {
-        let p = mesh.vertices[v as usize].as_dvec3();
-        Coord3D {
-            x: p.x,
-            y: p.y,
-            z: p.z,
-        }
-    };
-    let plane = b.map(at);
-    let corners = a.map(at);
-    let side = [0, 1, 2].map(|k| {
+fn coordinates(mesh: &Mesh, triangle: [u32; 3]) -> [Coord3D<f64>; 3] {
+    triangle.map(|v| {
+        let [x, y, z] = mesh.vertices[v as usize].as_dvec3().to_array();
+        Coord3D { x, y, z }
+    })
+}
+
+/// On which side of the plane of `b` each corner of `a` is, by sign; 0 for one that both have.
+fn sides(mesh: &Mesh, a: [u32; 3], b: [u32; 3]) -> [f64; 3] {
+    let [p, q, r] = coordinates(mesh, b);
+    let corners = coordinates(mesh, a);
+    [0, 1, 2].map(|k| {
         if b.contains(&a[k]) {
             0.0
         } else {
-            orient3d(plane[0], plane[1], plane[2], corners[k])
+            orient3d(p, q, r, corners[k])
         }
-    });
+    })
+}
+
+/// Whether an edge of `a`, whose corners are on these sides of the plane of `b`, goes through the inside of `b`.
+fn pierces(mesh: &Mesh, (a, side): ([u32; 3], [f64; 3]), b: [u32; 3]) -> bool {
+    let (corners, plane) = (coordinates(mesh, a), coordinates(mesh, b));
     (0..3).any(|k| {
         let next = (k + 1) % 3;
         let (from, to) = (side[k], side[next]);

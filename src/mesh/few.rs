@@ -5,6 +5,7 @@
 //! (H. Edelsbrunner, R. Seidel, "Voronoi diagrams and arrangements", 1986). With so few points all planes through three
 //! of them are tried, so that points in one plane or on one circle need no special case.
 
+use crate::base::linalg::Spread;
 use crate::base::params::Boundary;
 use crate::fit::cells::Sites;
 use crate::mesh::topology::topology;
@@ -124,15 +125,7 @@ struct Plane {
 
 impl Plane {
     fn of(points: &[DVec3]) -> Plane {
-        let mean = points.iter().sum::<DVec3>() / points.len() as f64;
-        let mut covariance = [0.0; 6];
-        for p in points {
-            let products = crate::base::linalg::outer(*p - mean);
-            for (sum, product) in covariance.iter_mut().zip(products) {
-                *sum += product;
-            }
-        }
-        let [normal, _, long] = crate::base::linalg::sym_eigen(&covariance).vectors;
+        let [normal, _, long] = Spread::of(points.iter().copied()).eigen.vectors;
         let axes = [long, normal.cross(long), normal];
         let extent = axes.map(|axis| {
             let along = points.iter().map(|p| p.dot(axis));

@@ -109,11 +109,7 @@ impl<'a> Field<'a> {
                 across.normalize() * (ratio * ratio - 1.0).sqrt()
             })
             .collect();
-        let node_reach = tree
-            .nodes
-            .iter()
-            .map(|n| reach[n.range()].iter().copied().fold(0.0, f32::max))
-            .collect();
+        let node_reach = tree.largest(&reach);
         let depth = 4.0 * f64::from(quantile(sites.spacing.clone(), 2));
         let mut field = Field {
             functions: &fits.functions,

@@ -1,18 +1,14 @@
 //! Edges that lead across a crease are flipped to lie along it, between two vertices on it (L. P. Kobbelt et al., "Feature
 //! sensitive surface extraction from volume data", 2001, section 4).
 
-use crate::mesh::collapse::VertexTriangles;
+use crate::mesh::collapse::{SLIVER_SINE2, Shape, VertexTriangles};
 use crate::mesh::surface::Mesh;
-use glam::DVec3;
 use std::collections::BTreeSet;
 
 /// Normals of both ends of an edge across a crease differ by more (cosine of 25°).
 const ACROSS: f32 = 0.906;
-/// A new triangle looks the way of its vertex that is on no crease to this cosine: 45°.
+/// A new triangle looks the way of its vertex that is on no crease to this cosine: 45°. Its least angle is 5° ([`SLIVER_SINE2`]).
 const FACING: f64 = 0.7;
-/// Squared sine of the least angle of a new triangle: 5°.
-const LEAST_SINE2: f64 = 0.0076;
-
 /// Flips them.
 pub(crate) fn flip(mesh: &mut Mesh, around: &VertexTriangles, on_crease: &[bool]) {
     let mut touched = vec![false; mesh.triangles.len()];
@@ -58,10 +54,9 @@ pub(crate) fn flip(mesh: &mut Mesh, around: &VertexTriangles, on_crease: &[bool]
         let good = [(new[0], n), (new[1], m)]
             .into_iter()
             .all(|(triangle, normal)| {
-                let at = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
-                let cross = (at[1] - at[0]).cross(at[2] - at[0]);
-                cross.dot(normal.as_dvec3()) >= FACING * cross.length()
-                    && sine2(at, cross) >= LEAST_SINE2
+                let shape = Shape::of(triangle.map(|v| mesh.vertices[v as usize].as_dvec3()));
+                shape.cross.dot(normal.as_dvec3()) >= FACING * shape.cross.length()
+                    && shape.sine2() >= SLIVER_SINE2
             });
         if good {
             [mesh.triangles[t], mesh.triangles[beyond as usize]] = new;
@@ -72,12 +67,6 @@ pub(crate) fn flip(mesh: &mut Mesh, around: &VertexTriangles, on_crease: &[bool]
             degree[b as usize] -= 1;
         }
     }
-}
-
-/// Squared sine of a triangle's least angle.
-fn sine2(t: [DVec3; 3], cross: DVec3) -> f64 {
-    let [p, q, r] = [t[1] - t[0], t[2] - t[1], t[0] - t[2]].map(DVec3::length_squared);
-    cross.length_squared() / (p.max(q) * p.min(q).max(r)).max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ pub(crate) fn smooth(mesh: &mut Mesh, at_end: &[bool]) {
     let normals: Vec<DVec3> = mesh
         .triangles
         .iter()
-        .map(|&t| cross(mesh, t).normalize_or_zero())
+        .map(|&t| mesh.cross(t).normalize_or_zero())
         .collect();
     for _ in 0..SWEEPS {
         for (end, triangles) in rim.iter().zip(around.iter()) {
@@ -82,11 +82,6 @@ fn rim(mesh: &Mesh, at_end: &[bool]) -> Vec<End> {
         }
     })
     .collect()
-}
-
-fn cross(mesh: &Mesh, triangle: [u32; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(|v| mesh.vertices[v as usize].as_dvec3());
-    (b - a).cross(c - a)
 }
 
 /// Area over summed squared edges; negative where the triangle has turned by more than 60° from `normal`.

@@ -3,7 +3,7 @@
 //! Beside a crease the fitted functions round it off, and noise makes them do so more. So the surface on each side is taken
 //! from where it is smooth, some edges away, and continued to the crease: by a plane, or by a quadric where that is much nearer.
 
-use crate::base::linalg::{outer, sym_eigen};
+use crate::base::linalg::Spread;
 use crate::mesh::collapse::VertexTriangles;
 use crate::mesh::curves::OnCrease;
 use crate::mesh::surface::Mesh;
@@ -24,7 +24,6 @@ const BENT: f64 = 0.3;
 const MEET: f64 = 0.42;
 /// Farthest from where the cell found it, in edges.
 const FARTHEST: f64 = 1.0;
-
 /// Deepest that a crease is rounded off, in edges.
 const DEEP: f64 = 0.5;
 
@@ -130,14 +129,7 @@ fn tangent(
     if points.len() < ENOUGH[0] {
         return None;
     }
-    let mean = points.iter().sum::<DVec3>() / points.len() as f64;
-    let mut covariance = [0.0; 6];
-    for p in points {
-        for (sum, product) in covariance.iter_mut().zip(outer(*p - mean)) {
-            *sum += product;
-        }
-    }
-    let eigen = sym_eigen(&covariance);
+    let Spread { mean, eigen, .. } = Spread::of(points.iter().copied());
     let up = eigen.vectors[0] * eigen.vectors[0].dot(normal).signum();
     if up.dot(normal) < SAME {
         return None;

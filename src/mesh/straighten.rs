@@ -15,7 +15,7 @@
 
 use crate::base::par;
 use crate::cloud::octree::Octree;
-use crate::mesh::collapse::{VertexTriangles, vertex_triangles};
+use crate::mesh::collapse::{SLIVER_SINE2, Shape, VertexTriangles, vertex_triangles};
 use crate::mesh::curves::{OnCrease, Samples};
 use crate::mesh::flips::flip;
 use crate::mesh::sides::{self, Rings, Sides};
@@ -45,8 +45,6 @@ const BESIDE: f64 = 0.7;
 const APART: f64 = 0.5;
 /// Least cosine between a triangle's normals before and after: 60°.
 const TURNED: f64 = 0.5;
-/// Squared sine of the least angle of a moved triangle, unless it had a smaller one: 5°.
-const LEAST_SINE2: f64 = 0.0076;
 
 /// Moves the vertices of a mesh onto their creases, and those between them that cut a crease off; marks all as `on_crease`.
 /// `edge` is the edge length of the lattice, `noise` that of the surface.
@@ -212,7 +210,7 @@ fn cut_off(
     found.into_iter().flatten().collect()
 }
 
-/// Moves a vertex, by half of the way or not at all where a triangle would turn over; whether it moved.
+/// Moves a vertex, by half of the way or not at all where a triangle would turn over or get an angle under 5°; whether it moved.
 fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) -> bool {
     let from = mesh.vertices[v as usize];
     for share in [1.0, 0.5] {
@@ -220,12 +218,12 @@ fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) -> b
         let stays = around.of(v).iter().all(|&t| {
             let corners = mesh.triangles[t as usize];
             let at = |w: u32| mesh.vertices[w as usize].as_dvec3();
-            let before = corners.map(at);
-            let after = corners.map(|w| if w == v { to.as_dvec3() } else { at(w) });
-            let (old, new) = (cross(before), cross(after));
+            let before = Shape::of(corners.map(at));
+            let after = Shape::of(corners.map(|w| if w == v { to.as_dvec3() } else { at(w) }));
+            let (old, new) = (before.cross, after.cross);
             let facing =
                 old.dot(new) >= TURNED * (old.length_squared() * new.length_squared()).sqrt();
-            facing && sine2(after) >= LEAST_SINE2.min(sine2(before))
+            facing && after.sine2() >= SLIVER_SINE2.min(before.sine2())
         });
         if stays {
             mesh.vertices[v as usize] = to;
@@ -233,17 +231,6 @@ fn move_to(mesh: &mut Mesh, around: &VertexTriangles, v: u32, target: Vec3) -> b
         }
     }
     false
-}
-
-fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
-}
-
-/// Squared sine of a triangle's least angle.
-fn sine2(t: [DVec3; 3]) -> f64 {
-    let [p, q, r] = [t[1] - t[0], t[2] - t[1], t[0] - t[2]].map(DVec3::length_squared);
-    let longest2 = p.max(q) * p.min(q).max(r);
-    cross(t).length_squared() / longest2.max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

@@ -48,6 +48,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Normal of a triangle, as long as twice its area.
+    pub fn cross(&self, triangle: [u32; 3]) -> DVec3 {
+        let [a, b, c] = triangle.map(|v| self.vertices[v as usize].as_dvec3());
+        (b - a).cross(c - a)
+    }
+
     /// Turns it to its other side.
     pub fn invert(&mut self) {
         self.normals.iter_mut().for_each(|n| *n = -*n);

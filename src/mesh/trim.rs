@@ -45,8 +45,8 @@ pub(crate) fn components(dual: &Dual) -> (Vec<u32>, usize) {
 }
 
 /// Drops quads on an open end with a corner farther from every point than [`RIM`] of their reach, from the end inwards: gaps
-/// of the sampling inside of the surface stay closed. So are quads near the end that show the back to the `sensor` of the
-/// nearest point ([`Implicit::sensor`]): no sensor sees such, the fit curls there. `edge` is that of the lattice.
+/// of the sampling inside of the surface stay closed. Dropped, too, are quads near the end that show the back to the `sensor` of
+/// the nearest point ([`Implicit::sensor`]): no sensor sees such, the fit curls there. `edge` is that of the lattice.
 ///
 /// [`Implicit::sensor`]: crate::mesh::Implicit::sensor
 pub(crate) fn trim_rims(
@@ -101,7 +101,11 @@ pub(crate) fn trim_rims(
         quads.flat_map(|(quad, q)| quad.vertices.map(|v| (v, q)))
     });
     let mut dropped = vec![false; dual.quads.len()];
-    let behind = BEHIND * f64::from(quantile(reach.to_vec(), 2));
+    let behind = if (0..points.len()).any(|i| sensor(i) != Vec3::ZERO) {
+        BEHIND * f64::from(quantile(reach.to_vec(), 2))
+    } else {
+        0.0
+    };
     let mut depth = 0.0;
     while !ends.is_empty() {
         for end in std::mem::take(&mut ends) {

@@ -168,13 +168,13 @@ fn surface(
     let is_scatter = |i: u32| scatter[i as usize];
     let scattered: Vec<bool> = (reduced.shares.iter().map(|s| is_scatter(s.center[0]))).collect();
     let drops = params.scatter == Scatter::Drop && !scatter::is_all(&scatter);
-    let dropped = if drops {
+    let without = if drops {
         scatter
     } else {
         vec![false; scatter.len()]
     };
     let how = (noise, params.orient);
-    let (sites, site_of) = sites(&reduced, &positions, &dropped, how, &mut clock)?;
+    let (sites, site_of) = sites(&reduced, &positions, &without, how, &mut clock)?;
     drop(positions);
     let subdomains = cells::divide(&sites, &mut clock)?;
     let stands_for = reduced.shares.iter().map(|s| site_of[s.center[0] as usize]);

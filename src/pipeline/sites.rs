@@ -1,6 +1,7 @@
 //! The points that a surface is fitted to: the reduced cloud, or all points where that would be too few.
 
 use crate::base::error::Result;
+use crate::base::groups::Groups;
 use crate::base::params::{Method, ReduceParams, SurfaceParams, Target};
 use crate::base::progress::Progress;
 use crate::cloud::copies::copies;
@@ -166,14 +167,14 @@ pub(crate) fn sites(
     let inside: Vec<Vec3> = framed.iter().map(|&i| positions[i as usize]).collect();
     let all = Octree::build(&inside);
     let index = |k: u32| framed[all.order[k as usize] as usize];
-    let groups = Groups::of(&all, input.lines > 0.0);
+    let (places, groups) = places(&all, input.lines > 0.0);
     let mut site_of = vec![None; positions.len()];
-    let mut tree = Octree::build(&groups.places);
+    let mut tree = Octree::build(&places);
     let mut spacing = Vec::with_capacity(tree.points.len());
     let mut normals = Vec::with_capacity(tree.points.len());
     let own = reduced.cloud.normals.as_deref().unwrap_or_default();
     for (site, place) in tree.order.iter_mut().enumerate() {
-        let members = groups.members(*place);
+        let members = groups.of(*place);
         *place = index(members[0]);
         let area = (members.len() as f32).sqrt();
         spacing.push(reduced.spacing[*place as usize] * area);
@@ -182,7 +183,7 @@ pub(crate) fn sites(
             site_of[index(k) as usize] = Some(site as u32);
         }
     }
-    drop((all, groups));
+    drop((all, places, groups));
     // Coarse sampling of curved parts looks like noise, so what is fitted is never noisier than the input.
     let noise = Scales::measure(&tree)
         .noise
@@ -192,46 +193,22 @@ pub(crate) fn sites(
     Ok((sites, site_of))
 }
 
-/// Points that are one site.
-struct Groups {
-    places: Vec<Vec3>,
-    /// The points of one place after those of the other.
-    points: Vec<u32>,
-    starts: Vec<u32>,
-}
-
-impl Groups {
-    fn of(tree: &Octree, has_lines: bool) -> Groups {
-        let n = tree.points.len() as u32;
-        if !has_lines {
-            let copies = copies(&tree.points);
-            let starts = copies.iter().map(|c| c.start as u32).chain([n]).collect();
-            return Groups {
-                places: copies.iter().map(|c| tree.points[c.start]).collect(),
-                points: (0..n).collect(),
-                starts,
-            };
-        }
-        let thinned = Thinned::along_lines(tree);
-        let mut points: Vec<u32> = (0..n).collect();
-        points.sort_by_key(|&k| thinned.place_of[k as usize]);
-        let mut starts = vec![0; thinned.places.len() + 1];
-        for &place in &thinned.place_of {
-            starts[place as usize + 1] += 1;
-        }
-        for place in 1..starts.len() {
-            starts[place] += starts[place - 1];
-        }
-        Groups {
-            places: thinned.places,
-            points,
-            starts,
-        }
+/// The places of the sites, and the points of each, at least one: copies, or of scan lines what is much nearer to each other than
+/// to the next line.
+fn places(tree: &Octree, has_lines: bool) -> (Vec<Vec3>, Groups<u32>) {
+    let n = tree.points.len() as u32;
+    if has_lines {
+        let Thinned {
+            places, place_of, ..
+        } = Thinned::along_lines(tree);
+        let points = Groups::new(places.len(), || place_of.iter().copied().zip(0..n));
+        return (places, points);
     }
-
-    /// The points of a place, at least one.
-    fn members(&self, place: u32) -> &[u32] {
-        let place = place as usize;
-        &self.points[self.starts[place] as usize..self.starts[place + 1] as usize]
-    }
+    let copies = copies(&tree.points);
+    let places = copies.iter().map(|c| tree.points[c.start]).collect();
+    let points = Groups::new(copies.len(), || {
+        let each = (0u32..).zip(&copies);
+        each.flat_map(|(place, c)| c.clone().map(move |k| (place, k as u32)))
+    });
+    (places, points)
 }

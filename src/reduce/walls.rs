@@ -46,9 +46,6 @@ fn limits(
         return None;
     }
     let found = par::map(groups.len(), Vec::new, limit_of);
-    if found.iter().all(|limit| limit.is_infinite()) {
-        return None;
-    }
     let each = groups.iter().zip(found);
     Some(
         each.flat_map(|(group, limit)| group.clone().map(move |_| limit))

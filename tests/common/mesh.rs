@@ -1,6 +1,7 @@
 //! What must never be wrong with a mesh, counted.
 
 use glam::{DVec3, Vec3};
+use pointweave::cloud::octree::Octree;
 use pointweave::report::{Topology, topology};
 
 /// Height over longest edge under which a triangle has no area to speak of.
@@ -68,4 +69,19 @@ fn folded(vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
         .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
         .filter(|e| e.len() == 2 && normal(e[0].2).dot(normal(e[1].2)) < FOLDED)
         .count()
+}
+
+/// Share of the area that is farther than 2 % of the diagonal from every point.
+pub fn far(vertices: &[Vec3], triangles: &[[u32; 3]], points: &[Vec3]) -> f64 {
+    let tree = Octree::build(points);
+    let (mut all, mut far) = (0.0, 0.0);
+    for t in triangles {
+        let [a, b, c] = t.map(|v| vertices[v as usize]);
+        let size = f64::from((b - a).cross(c - a).length());
+        all += size;
+        if tree.nearest((a + b + c) / 3.0).distance2 > 0.02 * 0.02 {
+            far += size;
+        }
+    }
+    far / all
 }

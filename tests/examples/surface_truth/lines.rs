@@ -1,9 +1,9 @@
 //! Section 6: scan lines, much farther apart than their points.
 
-use crate::measure::{mark, surface};
+use crate::measure::{doubts, mark, surface};
+use crate::mesh::far;
 use glam::{DVec3, dvec3};
 use pointweave::base::rng::Rng;
-use pointweave::cloud::octree::Octree;
 use pointweave::report::distance::TriangleTree;
 use pointweave::{Surface, SurfaceParams};
 use std::f64::consts::{PI, TAU};
@@ -168,7 +168,11 @@ fn row(cloud: &Lines) {
         Err(error) => return println!("{head} {error}{}", mark(true)),
     };
     let [mean, rms, turned] = to_truth(cloud, &s);
-    let far = far(&s);
+    let far = far(
+        &s.mesh.vertices,
+        &s.mesh.triangles,
+        &s.cloud.reduced.cloud.points,
+    );
     let missed = missed(cloud, &s);
     let is_missed = s.report.components != 1
         || cloud.is_closed && s.report.boundary_edges > 0
@@ -184,13 +188,7 @@ fn row(cloud: &Lines) {
         100.0 * missed,
         100.0 * far,
         1e4 * s.report.reduce.noise,
-        s.report
-            .reduce
-            .doubts
-            .iter()
-            .map(|d| d.code)
-            .collect::<Vec<_>>()
-            .join(","),
+        doubts(&s),
         mark(is_missed)
     );
 }
@@ -215,21 +213,6 @@ fn to_truth(cloud: &Lines, s: &Surface) -> [f64; 3] {
         }
     }
     [sum / weights, (squares / weights).sqrt(), turned / weights]
-}
-
-/// Share of the area that is farther than 2 % of the diagonal from every point.
-fn far(s: &Surface) -> f64 {
-    let tree = Octree::build(&s.cloud.reduced.cloud.points);
-    let (mut all, mut far) = (0.0, 0.0);
-    for t in &s.mesh.triangles {
-        let [a, b, c] = t.map(|v| s.mesh.vertices[v as usize]);
-        let size = f64::from((b - a).cross(c - a).length());
-        all += size;
-        if tree.nearest((a + b + c) / 3.0).distance2 > 0.02 * 0.02 {
-            far += size;
-        }
-    }
-    far / all
 }
 
 fn missed(cloud: &Lines, s: &Surface) -> f64 {

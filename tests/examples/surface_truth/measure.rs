@@ -18,6 +18,12 @@ pub fn mark(is_missed: bool) -> &'static str {
     if is_missed { MISS } else { "" }
 }
 
+/// Codes of what the report doubts, one after the other.
+pub fn doubts(s: &Surface) -> String {
+    let codes = s.report.reduce.doubts.iter().map(|d| d.code);
+    codes.collect::<Vec<_>>().join(",")
+}
+
 pub fn surface(points: &[DVec3], params: &SurfaceParams) -> Result<Surface> {
     let positions: Vec<f64> = points.iter().flat_map(|p| p.to_array()).collect();
     reconstruct(&Cloud::from_f64(&positions)?, params, &mut Silent)

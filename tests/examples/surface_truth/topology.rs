@@ -1,7 +1,7 @@
 //! Section 2: what must never be wrong with a mesh, on clouds that break careless methods.
 
 use crate::clouds::hostile;
-use crate::measure::{mark, reduced_to, surface};
+use crate::measure::{doubts, mark, reduced_to, surface};
 use crate::mesh::Flaws;
 use glam::DVec3;
 use pointweave::SurfaceParams;
@@ -75,13 +75,7 @@ pub fn rows(name: &str, points: &[DVec3]) {
                 t.inconsistent_edges,
                 flaws.stray,
                 flaws.folded,
-                s.report
-                    .reduce
-                    .doubts
-                    .iter()
-                    .map(|d| d.code)
-                    .collect::<Vec<_>>()
-                    .join(","),
+                doubts(&s),
                 mark(!flaws.is_clean() || is_unclosed || s.mesh.triangles.is_empty())
             );
         }
