@@ -22,6 +22,7 @@ mod header;
 mod line;
 mod names;
 mod plan;
+mod value;
 
 use super::input::Input;
 use super::options::ReadOptions;
@@ -130,7 +131,7 @@ fn read_line(
     values: &mut Vec<f64>,
 ) -> Result<Line> {
     let line = line.trim_ascii_end();
-    if line.is_empty() || is_comment(line) || plan.is_no_point(line) {
+    if is_comment(line) || plan.is_no_point(line) {
         return Ok(Line::Nothing);
     }
     if plan.dialect.split(line).nth(1).is_none()
@@ -138,8 +139,11 @@ fn read_line(
     {
         return Ok(count);
     }
-    plan.row(line, input, number, values)?;
-    Ok(Line::Row)
+    match plan.row(line, input, number, values) {
+        // Words between the rows, or below them.
+        Err(_) if plan.is_title(line) => Ok(Line::Nothing),
+        done => done.map(|()| Line::Row),
+    }
 }
 
 fn push(line: Line, values: &[f64], promised: &mut Option<u64>, rows: &mut u64, table: &mut Table) {
