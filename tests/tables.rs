@@ -1,6 +1,7 @@
 //! Tables of text as instruments, geographic information systems, viewers and spreadsheets write them.
 #![cfg(not(target_arch = "wasm32"))]
 
+use pointweave::cloud::Unit;
 use pointweave::formats::{
     Format, Positions, Preview, RawCloud, ReadOptions, Reading, detect, read, read_with,
 };
@@ -188,6 +189,20 @@ fn heights_of_other_names_and_depths_are_doubted() {
         Format::Xyz,
     );
     assert_eq!(numbered.map(|cloud| cloud.points()), Ok(rows.len()));
+}
+
+#[test]
+fn names_say_the_unit() {
+    let xyz = |[x, y, z]: [String; 3], _| format!("{x},{y},{z}");
+    for (header, unit) in [
+        ("X [mm],Y [mm],Z [mm]", Some(Unit::Millimetre)),
+        ("X (US ft),Y (US ft),Z (US ft)", Some(Unit::SurveyFoot)),
+        ("x,y,z\nm,m,m", Some(Unit::Metre)),
+        ("lon,lat,alt", Some(Unit::Degree)),
+        ("x,y,z", None),
+    ] {
+        assert_eq!(right(&table(header, xyz)).unit, unit, "{header}");
+    }
 }
 
 #[test]

@@ -30,6 +30,7 @@ use super::parser::{Parser, Step};
 use super::preview::Preview;
 use super::table::Table;
 use crate::base::error::{Error, Result};
+use crate::cloud::Unit;
 use line::{Line, NoPlan, Numbered, is_comment, line_of};
 use plan::Plan;
 
@@ -115,6 +116,10 @@ impl Parser for Xyz {
         self.plan
             .as_ref()
             .map_or(Vec::new(), |plan| plan.roles.clone())
+    }
+
+    fn unit(&self) -> Option<Unit> {
+        self.plan.as_ref().and_then(|plan| plan.unit)
     }
 
     fn preview(&self) -> Option<Preview> {

@@ -187,18 +187,24 @@ const WASM_OPT_FEATURES: [&str; 8] = [
 
 /// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
 pub fn build() -> Result<()> {
-    options::write()?;
-    Builder::ready()?.make_all(&Build::ALL, |build| {
-        say(&format!("building wasm, {}", build.name()));
-    })
+    make(&Build::ALL)
 }
 
-/// All builds, unless none of them is older than the sources: the quick way for tests.
+/// The builds that are older than the sources: the quick way for tests.
 pub fn ensure() -> Result<()> {
-    if Build::ALL.into_iter().all(Build::is_current) {
+    let is_old = |build: &Build| !build.is_current();
+    let old: Vec<Build> = Build::ALL.into_iter().filter(is_old).collect();
+    if old.is_empty() {
         return options::write();
     }
-    build()
+    make(&old)
+}
+
+fn make(builds: &[Build]) -> Result<()> {
+    options::write()?;
+    Builder::ready()?.make_all(builds, |build| {
+        say(&format!("building wasm, {}", build.name()));
+    })
 }
 
 /// What the builds are made with.

@@ -14,6 +14,7 @@ use super::line::{Line, NoPlan, Numbered, is_said, line_of};
 use super::names;
 use super::value::{Value, color};
 use crate::base::error::{Error, Result};
+use crate::cloud::Unit;
 
 /// How rows are read.
 pub(super) struct Plan {
@@ -33,6 +34,8 @@ pub(super) struct Plan {
     ragged: bool,
     /// The letter that points have in front, where other lines have others (Hoppe, 1992).
     letter: Option<u8>,
+    /// What a coordinate is, where the names of the columns say it.
+    pub(super) unit: Option<Unit>,
     pub(super) preview: Preview,
 }
 
@@ -87,7 +90,11 @@ impl Plan {
                 names,
                 ragged,
                 weak,
-            } => Ok(Plan::new(dialect, roles, &grid, names, ragged, weak)),
+            } => {
+                let unit = unit_above(before, dialect).or_else(|| names::unit(&names, &roles));
+                let plan = Plan::new(dialect, roles, &grid, names, ragged, weak);
+                Ok(Plan { unit, ..plan })
+            }
             Header::None if rows.is_empty() => {
                 match kinds.iter().position(|kind| *kind == Line::Other) {
                     Some(other) => Err(NoPlan::line(said[other], "rows of at least 3 numbers")),
@@ -195,6 +202,7 @@ impl Plan {
             bits,
             ragged,
             letter: None,
+            unit: None,
             preview,
         }
     }
@@ -268,6 +276,12 @@ impl Plan {
         let expected = format!("{} values", self.roles.len().max(3));
         input.bad_value(number, &expected, line)
     }
+}
+
+/// The unit of a line of units between the names and the rows.
+fn unit_above(before: &[&Numbered], dialect: Dialect) -> Option<Unit> {
+    let values: Vec<String> = dialect.split(&before.last()?.bytes).map(decoded).collect();
+    names::unit_of_line(values.iter().map(String::as_str))
 }
 
 /// Whether a line has words and no number.

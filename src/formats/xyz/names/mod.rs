@@ -6,8 +6,10 @@
 
 mod lists;
 mod role;
+mod unit;
 
 use role::{Role, loose, role};
+pub(super) use unit::{unit, unit_of_line};
 
 /// What a table's names say together.
 #[derive(Debug, Clone, PartialEq)]

@@ -130,7 +130,7 @@ pub(super) fn loose(name: &str) -> Option<(Role, String)> {
 
 /// Lower case, without units in brackets and accents, taken apart at what is neither letter nor digit, and before a capital
 /// behind a small letter.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut inside = 0;
     let mut text = String::new();
     let mut small = false;
