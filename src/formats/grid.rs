@@ -246,6 +246,11 @@ impl Header {
 
     fn grid(&mut self, input: &Input) -> Result<Grid> {
         self.settle();
+        let usual = if self.surfer.is_some() {
+            1.70141e38
+        } else {
+            -9999.0
+        };
         let missing = |what: &str| {
             input.bad_at_line(
                 input.place.line.max(1),
@@ -283,7 +288,7 @@ impl Header {
             rows: count(self.rows, "the count of rows")?,
             start,
             cell,
-            no_data: self.no_data.unwrap_or(-9999.0),
+            no_data: self.no_data.unwrap_or(usual),
             from_south: self.surfer.is_some(),
         })
     }

@@ -28,6 +28,11 @@ pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> boo
     }
 }
 
+/// Whether the names in a line only number the columns.
+pub(super) fn only_numbers(line: &Numbered, dialect: Dialect) -> bool {
+    names::only_number(&names_of(&line.bytes, dialect))
+}
+
 /// What the lines before the rows say.
 pub(super) enum Header {
     Names {
@@ -62,9 +67,7 @@ pub(super) fn header(
                 Ok(Header::None)
             }
             Some(line) if is_header_of_numbers(&[line, line], dialect) => Ok(Header::None),
-            Some(line) if names::only_number(&names_of(&line.bytes, dialect)) => {
-                Ok(Header::Numbers)
-            }
+            Some(line) if only_numbers(line, dialect) => Ok(Header::Numbers),
             Some(line) => Err(NoPlan::line(
                 line,
                 "numbers, or names of columns with x, y and z, or the option columns",

@@ -9,7 +9,7 @@ use super::super::text::decoded;
 use super::dialect::Dialect;
 use super::grid::{Grid, dialect_of};
 use super::guess::{Column, guess, is_colmap, is_unit};
-use super::header::{Header, header, header_names, is_header_of_numbers};
+use super::header::{Header, header, header_names, is_header_of_numbers, only_numbers};
 use super::line::{Line, NoPlan, Numbered, is_said, line_of};
 use super::names;
 use super::value::{Value, color};
@@ -357,6 +357,10 @@ pub(super) fn looks_like(lines: &[Numbered]) -> bool {
             Line::Nothing => {}
             Line::Count(_) | Line::Row => return true,
             Line::Other if is_header_of_numbers(&[line, line], dialect) => return true,
+            Line::Other if only_numbers(line, dialect) => {
+                let below = said.get(i + 1).map(|row| line_of(&row.bytes, dialect));
+                return below == Some(Line::Row);
+            }
             Line::Other => {
                 let below = &said[i..said.len().min(i + MOST)];
                 let names = below.iter().position(named);
