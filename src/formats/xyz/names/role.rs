@@ -1,7 +1,7 @@
 //! What one name of a column says.
 
 use super::lists::{
-    ACROSS, BESIDE, BESIDE_COLOR, COLOR, COLORS, NORMAL, NORMALS, PACKED, PLACES, UNLIKE, UP,
+    ACROSS, BESIDE, BESIDE_COLOR, COLOR, COLORS, NORMAL, NORMALS, PACKED, PLACES, UNLIKE, UP, is_in,
 };
 
 /// What a column holds.
@@ -31,8 +31,7 @@ pub(super) const DEPTH: usize = RANKS - 1;
 pub(super) fn role(name: &str) -> Option<Role> {
     let words = words(name);
     let joined = words.concat();
-    let is = |list: &[&str], word: &str| list.contains(&word);
-    if is(&PACKED, &joined) {
+    if is_in(PACKED, &joined) {
         return Some(Role::Packed);
     }
     if let Some(role) = single(&joined) {
@@ -45,31 +44,31 @@ pub(super) fn role(name: &str) -> Option<Role> {
         let component = ["0", "1", "2"].iter().position(|number| number == last);
         let lettered = ["x", "y", "z"].iter().position(|letter| letter == last);
         if let Some(axis) = component.or(lettered) {
-            let is_normal = |word: &String| word.len() > 1 && is(&NORMALS, word);
-            if is(&NORMALS, &array) || first.iter().any(is_normal) {
+            let is_normal = |word: &String| word.len() > 1 && is_in(NORMALS, word);
+            if is_in(NORMALS, &array) || first.iter().any(is_normal) {
                 return Some(Role::Normal(axis));
             }
-            if is(&PLACES, &array) {
+            if is_in(PLACES, &array) {
                 return Some(place(axis));
             }
         }
         if let Some(channel) = component
-            && is(&COLORS, &array)
+            && is_in(COLORS, &array)
         {
             return Some(Role::Color(channel));
         }
     }
-    let without = |beside: &[&str]| -> String {
-        let kept = words.iter().filter(|word| !is(beside, word));
+    let without = |beside: &str| -> String {
+        let kept = words.iter().filter(|word| !is_in(beside, word));
         kept.map(String::as_str).collect()
     };
     let color = COLOR
         .iter()
-        .position(|channel| is(channel, &without(&BESIDE_COLOR)));
+        .position(|channel| is_in(channel, &without(BESIDE_COLOR)));
     if let Some(channel) = color {
         return Some(Role::Color(channel));
     }
-    single(&without(&BESIDE)).filter(|role| matches!(role, Role::Across { .. } | Role::Up { .. }))
+    single(&without(BESIDE)).filter(|role| matches!(role, Role::Across { .. } | Role::Up { .. }))
 }
 
 fn place(axis: usize) -> Role {
@@ -81,7 +80,7 @@ fn place(axis: usize) -> Role {
 
 /// The role of a name that is one word, or whose words are one.
 fn single(word: &str) -> Option<Role> {
-    let is = |list: &&[&str]| list.contains(&word);
+    let is = |list: &&str| is_in(list, word);
     for (family, axes) in ACROSS.iter().enumerate() {
         if let Some(axis) = axes.iter().position(&is) {
             return Some(Role::Across { axis, family });
@@ -111,7 +110,7 @@ fn single(word: &str) -> Option<Role> {
 /// What one word of a name says, and the words beside it: those of a number behind it, too (`R8`).
 pub(super) fn loose(name: &str) -> Option<(Role, String)> {
     let words = words(name);
-    if words.iter().any(|word| UNLIKE.contains(&word.as_str())) {
+    if words.iter().any(|word| is_in(UNLIKE, word)) {
         return None;
     }
     let last = words.len().checked_sub(1)?;
@@ -135,10 +134,10 @@ pub(super) fn words(name: &str) -> Vec<String> {
     let mut text = String::new();
     let mut small = false;
     for whole in name.chars() {
-        if small && whole.is_uppercase() && inside == 0 {
+        if small && whole.is_ascii_uppercase() && inside == 0 {
             text.push(' ');
         }
-        small = whole.is_lowercase();
+        small = whole.is_ascii_lowercase();
         for c in whole.to_lowercase() {
             match c {
                 '(' | '{' => inside += 1,

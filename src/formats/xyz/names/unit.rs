@@ -55,8 +55,12 @@ fn unit_in(name: &str) -> Option<Unit> {
 }
 
 fn known(text: &str) -> Option<Unit> {
-    let is_letter = |c: &char| c.is_alphabetic();
-    let letters: String = text.to_lowercase().chars().filter(is_letter).collect();
+    let is_letter = |c: &char| c.is_ascii_alphabetic();
+    let letters: String = text
+        .to_ascii_lowercase()
+        .chars()
+        .filter(is_letter)
+        .collect();
     Some(match letters.as_str() {
         "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Unit::Millimetre,
         "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => Unit::Centimetre,
