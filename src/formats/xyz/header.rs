@@ -21,7 +21,7 @@ pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> boo
         values.by_ref().take(3).all(|value| value.contains(&b'.'))
     };
     match tokens.as_slice() {
-        [first, rest @ ..] if first.is_empty() => !below.is_empty() && numbers(rest),
+        [[], rest @ ..] => !below.is_empty() && numbers(rest),
         all => {
             below.len() >= 3 && numbers(all) && below.iter().take(100).all(|line| has_places(&line))
         }
