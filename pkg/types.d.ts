@@ -313,7 +313,7 @@ export interface EngineOptions {
   worker?: boolean;
   /**
    * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/` and `samples/`, or
-   * the URLs of the wasm files. All but the first two are loaded when a file of theirs is read or written, or a sample made. Default: beside the package.
+   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, or a sample made. Default: beside the package.
    */
   wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; samples?: string | URL };
   /**
@@ -374,7 +374,7 @@ export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };
 
 export type ErrorCode =
-  | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
+  | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'detached' | 'bad-option' | 'degenerate'
   | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
   | 'bad-index' | 'needs-triangles' | 'missing-package' | 'no-webgl';
 

@@ -121,8 +121,17 @@ function valueOf({ name, key, group, rule, kind }, values) {
 export function parseValue(name, rule, text) {
   const number = text.trim() === '' ? NaN : Number(text);
   const value = [text, number].find((candidate) => rule.accepts(candidate, name));
-  if (value === undefined) throw new UsageError(`--${name} is '${text}': expected ${rule.expected}`);
-  return value;
+  if (value !== undefined) return value;
+  const meant = shareIn(text);
+  const hint = meant !== undefined && rule.accepts(meant, name) ? `: did you mean ${meant}?` : '';
+  throw new UsageError(`--${name} is '${text}': expected ${rule.expected}${hint}`);
+}
+
+/** The number that a percentage or a fraction means. @param {string} text `20%`, `20 %`, `1/3` @returns {number | undefined} */
+function shareIn(text) {
+  const [, above, sign, below] = /^\s*([\d.]+)\s*(%|\/)\s*([\d.]*)\s*$/.exec(text) ?? [];
+  const value = sign === '%' && below === '' ? Number(above) / 100 : Number(above) / Number(below);
+  return Number.isFinite(value) ? Number(value.toPrecision(4)) : undefined;
 }
 
 /** @param {string} name @param {string} key @param {Rule} rule @param {string[]} texts each `name=how` */

@@ -12,7 +12,7 @@ import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { byteSourceOf } from '../files/byte-source.js';
+import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
 
@@ -97,7 +97,7 @@ async function read(place, data, options) {
   const open = (build, job) => withModule(place, build, { signal }, job).catch((error) => {
     throw readerError(error, build);
   });
-  return readScan(open, file, { name: data.name, ...own }, { signal, onProgress });
+  return readScan(open, file, { name: nameOf(data), ...own }, { signal, onProgress });
 }
 
 /** @param {Place} place @param {any} result @param {unknown} options */

@@ -47,7 +47,7 @@ export const ENGINE = {
   idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
     `the URL of the folder that holds ${BUILDS.join('/, ')}/, or an object { ${BUILDS.join(', ')} } of file URLs`,
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => BUILDS.includes(key) && isUrl(value[key]))),
+    (value) => (isUrl(value) ? !isWasm(value) : isObject(value) && Object.keys(value).every((key) => BUILDS.includes(key) && isUrl(value[key]))),
   ),
 };
 
@@ -108,6 +108,11 @@ function checkCompression({ format = WRITE.format.fallback, quantize, meshopt })
   for (const [option, value] of Object.entries({ quantize, meshopt })) {
     if (value && format !== 'glb') throw badOption(option, "false, unless format is 'glb'", value);
   }
+}
+
+/** One file, where a folder is expected. @param {unknown} value */
+function isWasm(value) {
+  return /\.wasm([?#]|$)/.test(String(value));
 }
 
 /** @param {unknown} value */
