@@ -232,7 +232,7 @@ export type Beside =
 export type OutputFormat =
   /** Everything, in world coordinates: `double` where they need it. */
   | 'ply'
-  /** Rows of text: everything but triangles, in world coordinates. */
+  /** Rows of text: everything but triangles, in world coordinates. With attributes, a comment at the top names the columns. */
   | 'xyz'
   /**
    * Binary glTF 2.0: everything. Positions are in single precision, and the origin is the node's translation in double
@@ -369,6 +369,9 @@ export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: numb
 
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
+
+/** How many points `target: 'auto'` keeps of so many, on this device. */
+export function autoCount(points: number): number;
 
 /** What is taken for each option that is not given; `undefined` where that follows from other options. */
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };

@@ -59,7 +59,7 @@ export class Scan {
    * @param {Wish} wish
    * @param {Work} work
    */
-  async make(view, { target, ...side }, work) {
+  async make(view, { target = 'auto', ...side }, work) {
     const { signal, onProgress, seen } = work;
     const before = this.#done;
     this.#done = 0;
@@ -73,7 +73,7 @@ export class Scan {
       if (view === 'reduced') {
         this.reduced = await engine.reduce(this.cloud, { target, ...options });
       } else {
-        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...side, ...options });
+        this.mesh = await engine.reconstruct(this.cloud, { reduce: { target }, ...side, ...options });
         this.reduced = this.mesh.cloud;
       }
     });

@@ -2,6 +2,7 @@
  * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
  * `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
  */
+import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
@@ -23,10 +24,15 @@ const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'cal
  * @type {{ [call in 'reduce' | 'reconstruct' | 'inspect']: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
  */
 const ARGUMENTS = {
-  reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
-  reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  reduce: (cloud, own, transfer) => withCount(cloudArgument(cloud, transfer), own),
+  reconstruct: (cloud, own, transfer) => withCount(cloudArgument(cloud, transfer), own),
   inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
 };
+
+/** @param {import('../types.js').PointCloud} cloud @param {Record<string, any>} own */
+function withCount(cloud, own) {
+  return [cloud, counted(own, cloud)];
+}
 
 /** Calls that wait for wasm of their own. @type {Record<string, (place: Place, subject: any, options: unknown) => Promise<any>>} */
 const WAITING = { read, write, sample };

@@ -2,6 +2,7 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after a crash and after most aborts)
  * that does them.
  */
+import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
@@ -101,7 +102,8 @@ export class Engine {
    */
   async reduce(cloud, options) {
     const { own, transfer, ...watch } = this.#check('reduce', options);
-    return this.#run({ call: 'reduce', args: [cloudArgument(cloud, transfer), own] }, watch);
+    const argument = cloudArgument(cloud, transfer);
+    return this.#run({ call: 'reduce', args: [argument, counted(own, argument)] }, watch);
   }
 
   /**
@@ -112,7 +114,8 @@ export class Engine {
    */
   async reconstruct(cloud, options) {
     const { own, transfer, ...watch } = this.#check('reconstruct', options);
-    return this.#run({ call: 'reconstruct', args: [cloudArgument(cloud, transfer), own] }, watch);
+    const argument = cloudArgument(cloud, transfer);
+    return this.#run({ call: 'reconstruct', args: [argument, counted(own, argument)] }, watch);
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */

@@ -3,10 +3,19 @@
  * table in Rust; here stand those that are the package's own.
  */
 import { AXES, UNITS, isDirection } from './axes.js';
-import { RECONSTRUCT, REDUCE } from './options-table.js';
-import { badOption, checkTable, choice, defaultsOf, integer, isObject, number, rule, toggle } from './rules.js';
+import * as TABLE from './options-table.js';
+import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
 
 /** @import { ReconstructOptions, ReduceOptions } from '../types.js' */
+
+const { target } = TABLE.REDUCE;
+const AUTO = 'auto';
+/** The package makes a count of `'auto'` (amount.js). */
+const REDUCE = {
+  ...TABLE.REDUCE,
+  target: { ...target, ...rule(`'${AUTO}' or ${target.expected}`, (value, path) => value === AUTO || target.accepts(value, path), target.fallback) },
+};
+const RECONSTRUCT = { ...TABLE.RECONSTRUCT, reduce: nested('reduce', REDUCE) };
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),

@@ -185,20 +185,29 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
+/// `cargo xtask build`: what is written from the table of options, the builds of pkg/wasm and the element in one file.
 pub fn build() -> Result<()> {
     options::write()?;
     Builder::ready()?.make_all(&Build::ALL, |build| {
         say(&format!("building wasm, {}", build.name()));
-    })
+    })?;
+    one_file()
 }
 
 /// All builds, unless none of them is older than the sources: the quick way for tests.
 pub fn ensure() -> Result<()> {
     if Build::ALL.into_iter().all(Build::is_current) {
-        return options::write();
+        options::write()?;
+        return one_file();
     }
     build()
+}
+
+/// `pkg/element.min.js`, made of the package's modules in no time.
+fn one_file() -> Result<()> {
+    packages::npm(&root().join("xtask"))?;
+    let remedy = "the element's one file was not made; the error is above";
+    run(command("node").arg("xtask/element.mjs"), remedy)
 }
 
 /// What the builds are made with.
