@@ -66,7 +66,7 @@ export interface LayerColors {
   edges: string;
   boxes: string;
   /** Of a GLB's materials that are plain white: default white. */
-  plain: string;
+  plain?: string;
 }
 
 /** Room at the edges of the canvas for what lies over the picture, in CSS pixels. At most 40 % of a side's length is given. */

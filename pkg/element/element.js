@@ -1,15 +1,16 @@
 /** The element itself: attributes and the viewport come in, jobs and events go out. */
-import { PointweaveError } from '../engine/errors.js';
+import { PointweaveError, toRecord } from '../engine/errors.js';
 import { listenToKeys } from '../viewer/keyboard.js';
 import { calm, inSight } from '../viewer/watching.js';
 import { nextLoad } from './awaited.js';
 import { describe, setOrRemove } from './described.js';
 import { Hotspots } from './hotspots.js';
+import { KEYS } from './keys.js';
 import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
 import { Posed, VIEWER } from './posed.js';
 import { Prompt } from './prompt.js';
-import { isNamedGlb, openSource } from './source.js';
+import { isNamedGlb, openSource, wishOf } from './source.js';
 import { Speech } from './speech.js';
 import { CAMERA, LIGHT } from './switching.js';
 import { themeOf } from './theme.js';
@@ -20,19 +21,6 @@ import { WORDS } from './words.js';
 /** @import { AbortReason, ErrorDetail, LoadDetail, PointWeaveEventMap, Stage, View, Words } from '../element.js' */
 /** @import { Viewer } from '../viewer.js' */
 /** @import { Glb, Scan } from './source.js' */
-
-/** What model-viewer calls those who move the camera. */
-const MOVERS = /** @type {const} */ ({ pointer: 'user-interaction', keys: 'user-interaction', program: 'none' });
-
-/** @typedef {{ choose: (view: View) => void, pause: () => void }} Hands */
-
-/** Keys besides those of the viewer. @type {Record<string, (hands: Hands) => void>} */
-const KEYS = {
-  1: ({ choose }) => choose('points'),
-  2: ({ choose }) => choose('reduced'),
-  3: ({ choose }) => choose('mesh'),
-  ' ': ({ pause }) => pause(),
-};
 
 /** Work under way. @typedef {{ src: string, controller: AbortController, share: number, stage: Stage }} Job */
 
@@ -69,7 +57,7 @@ export class PointWeaveElement extends Posed {
     retry.addEventListener('click', () => this.#retry());
     reset.addEventListener('click', () => this.resetCamera());
     pause.addEventListener('click', () => this.#pause());
-    fullscreen.addEventListener('click', () => this.#toggleFullscreen());
+    fullscreen.addEventListener('click', () => this.toggleFullscreen());
     image.addEventListener('error', () => this.#panels.setPoster(''));
     poster.addEventListener('slotchange', () => this.#cover());
     for (const { input, view } of choices) input.addEventListener('change', () => this.#choose(view));
@@ -197,13 +185,6 @@ export class PointWeaveElement extends Posed {
     return Boolean(this.#source && this[VIEWER]?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
   }
 
-  /** @returns {import('./source.js').Wish} */
-  get #wish() {
-    const { count, ratio, orientation, flip } = this;
-    const target = count !== null ? { count } : ratio !== null ? { ratio } : undefined;
-    return { target, orientation, flip };
-  }
-
   /** Of what is shown. */
   get report() {
     const shown = this.#source?.kind === 'scan' ? this.#source.of(this.#best()) : undefined;
@@ -272,7 +253,7 @@ export class PointWeaveElement extends Posed {
         this.#showBest();
       }
       while (source.kind === 'scan' && !viewer.has(this.view)) {
-        await source.make(this.view, this.#wish, work);
+        await source.make(this.view, wishOf(this), work);
         signal.throwIfAborted();
         const { reduced = null, mesh = null } = source;
         viewer.set('reduced', reduced && { ...reduced, oriented: Boolean(mesh) });
@@ -300,7 +281,7 @@ export class PointWeaveElement extends Posed {
     const viewer = createViewer(this.#parts.canvas, { interactive: this.controls, up: this.up });
     viewer.addEventListener('move', ({ detail: { by } }) => {
       if (by !== 'program') this.#prompt.done();
-      this.#send('camera-change', { source: MOVERS[by] });
+      this.tellMove(by);
       if (by === 'keys') this.#speech.atRest(() => PointWeaveElement.words.pose(viewer.pose));
     });
     if (!this.#attached) viewer.suspend();
@@ -333,9 +314,7 @@ export class PointWeaveElement extends Posed {
 
   /** @param {string} src @param {unknown} cause */
   #fail(src, cause) {
-    const error = /** @type {ErrorDetail['error']} */ (cause instanceof PointweaveError
-      ? cause
-      : new PointweaveError({ code: 'internal', message: cause instanceof Error ? cause.message : String(cause) }));
+    const error = /** @type {ErrorDetail['error']} */ (cause instanceof PointweaveError ? cause : new PointweaveError(toRecord(cause)));
     const { errors } = PointWeaveElement.words;
     this.#panels.end();
     this.#panels.showError(errors[error.code] ?? errors.other, error.message);
@@ -453,12 +432,7 @@ export class PointWeaveElement extends Posed {
     this.#dress();
   }
 
-  async #toggleFullscreen() {
-    if (document.fullscreenElement === this) await document.exitFullscreen();
-    else await this.requestFullscreen();
-  }
-
-  /** What the keys act on that do not move. @type {Hands} */
+  /** What the keys act on that do not move. @type {import('./keys.js').Hands} */
   #hands = { choose: (view) => this.#choose(view), pause: () => this.#pause() };
 
   /**

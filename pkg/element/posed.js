@@ -7,6 +7,9 @@ import { Reflecting } from './attributes.js';
 /** The element's viewer, once there is one. */
 export const VIEWER = Symbol('viewer');
 
+/** What model-viewer calls those who move the camera. */
+const MOVERS = /** @type {const} */ ({ pointer: 'user-interaction', keys: 'user-interaction', program: 'none' });
+
 export class Posed extends Reflecting {
   /** @type {Viewer | undefined} */
   [VIEWER];
@@ -53,6 +56,16 @@ export class Posed extends Reflecting {
   toBlob(type, quality) {
     this[VIEWER]?.draw();
     return new Promise((/** @type {(blob: Blob | null) => void} */ resolve) => this.#canvas.toBlob(resolve, type, quality));
+  }
+
+  async toggleFullscreen() {
+    if (document.fullscreenElement === this) await document.exitFullscreen();
+    else await this.requestFullscreen();
+  }
+
+  /** The camera has moved. @param {keyof typeof MOVERS} by */
+  tellMove(by) {
+    this.dispatchEvent(new CustomEvent('camera-change', { detail: { source: MOVERS[by] } }));
   }
 
   /** Brings the camera in line with the attributes. @param {string} [attribute] that has changed; default all */

@@ -20,6 +20,12 @@ import { inTurn } from './turns.js';
 
 /** What is asked for. @typedef {{ target?: Target, orientation: Orientation, flip: boolean }} Wish */
 
+/** @param {import('./attributes.js').Reflecting} asked @returns {Wish} */
+export function wishOf({ count, ratio, orientation, flip }) {
+  const target = count !== null ? { count } : ratio !== null ? { ratio } : undefined;
+  return { target, orientation, flip };
+}
+
 /** What share of the whole each part takes, about. */
 const FETCHED = { glb: 0.9, points: 0.7, computed: 0.2 };
 const READ = { points: 1, computed: 0.3 };

@@ -5,7 +5,7 @@
 /** Red, green and blue of sRGB, 0 to 1. @typedef {[number, number, number]} Rgb */
 
 /** For layers without colours of their own, on light and on dark backgrounds. @type {LayerColors} */
-export const COLORS = { points: '#5d7f93', reduced: '#0f8c84', mesh: '#f1e7d8', edges: '#14303a', boxes: '#b07d1e', plain: '#ffffff' };
+export const COLORS = { points: '#5d7f93', reduced: '#0f8c84', mesh: '#f1e7d8', edges: '#14303a', boxes: '#b07d1e' };
 
 /** @type {CanvasRenderingContext2D | undefined} */
 let pixel;

@@ -135,7 +135,7 @@ export class Stage {
 
   /** What has no colours of its own gets ours. */
   #tint() {
-    const { mesh, points, edges, boxes, plain } = this.#colors;
+    const { mesh, points, edges, boxes, plain = '#ffffff' } = this.#colors;
     const own = /** @type {Record<string, string>} */ (/** @type {unknown} */ (this.#colors));
     for (const [name, layer] of this.layers) {
       const color = rgb(own[name] ?? (layer.points ? points : mesh));
