@@ -417,7 +417,7 @@ export class PointWeaveElement extends Posed {
     const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
     if (!this[VIEWER]) return;
-    this[VIEWER].insets = { bottom: controls ? this.#panels.room : 0 };
+    this[VIEWER].insets = controls ? this.#panels.room : { top: 0, bottom: 0 };
     this[VIEWER].interactive = controls;
     this[VIEWER].autoRotate = turns && !this.#paused;
   };

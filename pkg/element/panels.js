@@ -91,13 +91,16 @@ export class Panels {
     this.#parts.error.hidden = true;
   }
 
-  /** What the toolbar takes of the picture's lower half, in CSS pixels. */
+  /** What the toolbar takes of the picture's upper and lower half, in CSS pixels. */
   get room() {
     const { frame, toolbar, views, tools } = this.#parts;
-    if (toolbar.hidden) return 0;
     const { top, bottom } = frame.getBoundingClientRect();
-    const tops = [views, tools].map((part) => part.getBoundingClientRect()).filter((box) => box.height > BARE && 2 * box.top > top + bottom);
-    return tops.length > 0 ? bottom - Math.min(...tops.map((box) => box.top)) + GAP : 0;
+    const boxes = toolbar.hidden ? [] : [views, tools].map((part) => part.getBoundingClientRect()).filter(({ height }) => height > BARE);
+    const [above, below] = [true, false].map((wanted) => boxes.filter((box) => (box.top + box.bottom < top + bottom) === wanted));
+    return {
+      top: Math.max(0, ...above.map((box) => box.bottom - top + GAP)),
+      bottom: Math.max(0, ...below.map((box) => bottom - box.top + GAP)),
+    };
   }
 
   /**

@@ -15,8 +15,8 @@ const WIDER = 1.5;
 /** What is higher than this share of its size throws no shadow. */
 const HIGH = 0.5;
 /** Standard deviations of the blur in pixels, one pass after the other. */
-const BLURS = [7, 3];
-const DARKEST = 0.62;
+const BLURS = [13, 7];
+const DARKEST = 0.6;
 
 export class Ground {
   /** From 0, none, to 1. */
