@@ -12,7 +12,7 @@ import { studioMatcap } from './matcap.js';
  */
 export function meshMaterial(look) {
   const material = new MeshMatcapMaterial({
-    ...look, matcap: studioMatcap(), side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    ...look, matcap: studioMatcap(), toneMapped: false, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   });
   const measured = { value: 0 };
   material.userData.measured = measured;
@@ -38,12 +38,12 @@ export function meshMaterial(look) {
 
 /** Edges of triangles, thin over the surface. */
 export function edgeMaterial() {
-  return new LineBasicMaterial({ transparent: true, opacity: 0.42, depthWrite: false });
+  return new LineBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.42, depthWrite: false });
 }
 
 /** Boxes: opaque, as the depth pass of the clouds wants it. */
 export function boxMaterial() {
-  return new LineBasicMaterial();
+  return new LineBasicMaterial({ toneMapped: false });
 }
 
 /**
