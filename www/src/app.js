@@ -2,6 +2,8 @@ import { addressOf, readAddress } from './session/address.js';
 import { Comparison } from './controls/comparison.js';
 import { Controls } from './controls/controls.js';
 import { announce, byId } from './dom.js';
+import { DroppedList } from './controls/dropped-list.js';
+import { sortOut } from './session/dropped.js';
 import { acceptFiles } from './session/files.js';
 import * as format from './results/format.js';
 import { helpDialog } from './help.js';
@@ -47,6 +49,9 @@ export class App {
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
   #columns = new ColumnChooser();
+  /** The files that came in together last. @type {import('./session/dropped.js').Dropped[]} */
+  #together = [];
+  #dropped = new DroppedList((dropped) => this.#openOne(dropped.file));
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
   #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
@@ -65,17 +70,23 @@ export class App {
     this.#session.settings.read(words);
     this.#look.wish(view, paint);
     this.#controls.show(this.#session.target, 0);
-    if (src && !sample) return this.#session.openAddress(src);
-    return this.#session.openSample(sample ?? 'duck');
+    if (!src || sample) return this.#session.openSample(sample ?? 'duck');
+    return this.#session.openAddress(src);
   }
 
-  #openFiles(/** @type {File[]} */ files) {
-    if (!files.length) return;
-    // A mesh may name its material library and pictures, which come along.
-    const first = files.find((file) => !/\.(mtl|png|jpe?g|webp)$/i.test(file.name)) ?? files[0];
-    const beside = files.filter((file) => file !== first);
-    if (beside.length > 0) announce(`One scan at a time: opening ${first.name}`);
-    return this.#session.openFile(first, { beside });
+  #openFiles(/** @type {{ file: File, path: string }[]} */ files) {
+    if (!files.length) return this.#message.show('empty-folder', '');
+    const { first, all } = sortOut(files);
+    this.#together = all;
+    this.#dropped.offer(all);
+    return this.#openOne(first.file);
+  }
+
+  /** Opens a file of those that came in together; a mesh may name the others. @param {File} file @param {string[]} [columns] */
+  #openOne(file, columns) {
+    this.#message.hide();
+    const beside = this.#together.map((other) => other.file).filter((other) => other !== file);
+    return this.#session.openFile(file, { columns, beside });
   }
 
   #listenToSession() {
@@ -87,14 +98,14 @@ export class App {
     on('made', (/** @type {Outcome} */ outcome) => this.#made(outcome));
     on('turned', ({ outcome, piece }) => this.#turned(outcome, piece));
     on('cancelled', () => this.#cancelled());
-    on('failed', ({ error, title, given }) => this.#failed(error, title, given));
+    on('failed', (failure) => this.#failed(failure));
   }
 
   #listenToControls() {
     byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
     this.#run.addEventListener('click', () => this.#session.run());
     for (const button of this.#samples()) {
-      button.addEventListener('click', () => this.#session.openSample(/** @type {SampleName} */ (button.dataset.sample)));
+      button.addEventListener('click', () => this.#openSample(/** @type {SampleName} */ (button.dataset.sample)));
     }
     addEventListener('hashchange', () => this.#addressChanged());
     /** @type {Key[]} */
@@ -109,11 +120,15 @@ export class App {
     listenToKeys(keys);
   }
 
+  #openSample(/** @type {SampleName} */ model) {
+    this.#message.hide();
+    return this.#session.openSample(model);
+  }
+
   #enter(/** @type {State} */ state) {
     this.#root.dataset.state = state;
     this.#run.hidden = true;
     if (state === 'reading') {
-      this.#message.hide();
       this.#progress.start('Reading the scan');
     } else if (state === 'working') {
       this.#numbers.stale();
@@ -134,6 +149,7 @@ export class App {
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
+    this.#dropped.opened(scan.given);
     this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
     this.#noteAddress();
@@ -142,7 +158,7 @@ export class App {
   /** Lets a person say what the columns of a table are. */
   #offerColumns(/** @type {Scan} */ { given, cloud }) {
     const { file, columns } = cloud;
-    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#session.openFile(given, { columns: chosen }));
+    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#openOne(given, chosen));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -201,14 +217,17 @@ export class App {
     this.#run.hidden = !this.#session.scan;
   }
 
-  /** @param {any} error @param {string} title @param {File} [given] the file that could not be read */
-  #failed(error, title, given) {
-    this.#message.showError(error, title);
+  /** @param {{ error: any, title: string, given?: File, model?: SampleName }} failure `given`: the file that could not be read */
+  #failed({ error, title, given, model }) {
+    const standIn = !this.#session.scan && !model;
+    this.#message.showError(error, title, { standIn });
+    if (given) this.#dropped.failed(given);
     // Whoever knows what the columns of a table are can still have it read.
     if (given && error?.table) {
-      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#session.openFile(given, { columns: chosen }));
+      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#openOne(given, chosen));
     }
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
+    if (standIn) this.#session.openSample('duck');
   }
 
   #escape() {
@@ -243,7 +262,7 @@ export class App {
     const { words, sample, view, paint } = readAddress();
     this.#session.settings.read(words);
     this.#look.wish(view, paint);
-    if (isSample(sample) && sample !== this.#session.scan?.model) this.#session.openSample(sample);
+    if (isSample(sample) && sample !== this.#session.scan?.model) this.#openSample(sample);
     else this.#settingsChanged();
   }
 

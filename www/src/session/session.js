@@ -36,7 +36,7 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page.
  *
  * Events: `state` (a State), `opened` (a Scan), `progress` ({stage, overall}), `made` (an Outcome),
- * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title, given}); the value is the event's `detail`.
+ * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title, given, model}); the value is the event's `detail`.
  */
 export class Session extends EventTarget {
   settings = new Settings();
@@ -50,6 +50,8 @@ export class Session extends EventTarget {
   #stood = '';
   /** @type {AbortController | null} */
   #job = null;
+  /** A result of the open scan is asked for and not there yet. A file that cannot be read only interrupts that; Cancel ends it. */
+  #wanted = false;
   /** What is computed beside the job, and ends with it. @type {AbortController | null} */
   #aside = null;
 
@@ -109,14 +111,17 @@ export class Session extends EventTarget {
     const scan = this.scan;
     if (!scan) return;
     const job = this.#begin('working');
+    this.#wanted = true;
     this.#asked = JSON.stringify(this.settings.options(this.target));
     this.#stood = JSON.stringify(scan.cloud.up);
     try {
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
       this.outcome = outcome;
+      this.#wanted = false;
       this.#end(job, 'made', outcome);
     } catch (error) {
+      if (!job.signal.aborted) this.#wanted = false;
       this.#end(job, 'failed', { error, title: scan.title });
     }
   }
@@ -125,6 +130,7 @@ export class Session extends EventTarget {
   cancel() {
     if (!this.#job) return;
     this.#job.abort();
+    this.#wanted = false;
     this.#asked = '';
     this.#end(this.#job, 'cancelled');
   }
@@ -204,9 +210,9 @@ export class Session extends EventTarget {
       this.outcome = null;
       this.#emit('opened', this.scan);
     } catch (error) {
-      this.#end(job, 'failed', { error, title: source.title, given: source.given });
-      // The scan that was open stays; the job that this file interrupted goes on.
-      if (this.#job === null && this.scan && !this.outcome) await this.run();
+      this.#end(job, 'failed', { error, ...source });
+      // The scan that was open stays; the job that this file interrupted goes on, one that was cancelled does not.
+      if (this.#job === null && this.#wanted) await this.run();
       return;
     }
     await this.run();
