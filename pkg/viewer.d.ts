@@ -177,6 +177,8 @@ export interface Viewer extends EventTarget {
   autoRotate: boolean;
   /** Parallel projection instead of perspective. Default false. */
   parallel: boolean;
+  /** Points are drawn this many times as large as they are of themselves. Default 1. */
+  pointSize: number;
   readonly pose: Pose;
   /** Turns around what is shown, in radians. */
   turn(right: number, over: number): void;

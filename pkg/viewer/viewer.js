@@ -62,6 +62,7 @@ class CanvasViewer extends EventTarget {
   #insets = NO_INSETS;
   #seen = true;
   #awake = false;
+  #pointSize = 1;
   /** Who has moved since the last frame. @type {Mover | null} */
   #moved = null;
 
@@ -240,6 +241,15 @@ class CanvasViewer extends EventTarget {
     this.#orbit.autoRotate = turns;
   }
 
+  get pointSize() {
+    return this.#pointSize;
+  }
+
+  set pointSize(scale) {
+    this.#pointSize = scale;
+    this.#ask();
+  }
+
   get parallel() {
     return this.#orbit.parallel;
   }
@@ -348,6 +358,7 @@ class CanvasViewer extends EventTarget {
       const { uniforms } = /** @type {import('three').ShaderMaterial} */ (material);
       uniforms.pixelsPerUnit.value = parallel ? perUnit * distance : perUnit;
       uniforms.distance.value = distance;
+      uniforms.scale.value = this.#pointSize;
       uniforms.smallest.value = 1.5 * this.ratio;
       if (uniforms.measured.value) dome = MEASURED_DOME;
     }

@@ -10,7 +10,7 @@ import { localSpacing } from '../../pkg/viewer/density.js';
 import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
 import { likelyUp } from '../../pkg/viewer/upright.js';
 import { countHoles } from '../../www/src/look/holes.js';
-import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
+import { CONTROLS, PLACES, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
 
@@ -88,6 +88,7 @@ test('sharp places are on the edges of the part, and hardly anywhere on the duck
 });
 
 test('settings: defaults are the package\'s, and an address brings back what was chosen', () => {
+  assert.deepEqual(Object.values(PLACES).flat().sort(), Object.keys(CONTROLS).sort(), 'each has one place');
   for (const key of Object.keys(CONTROLS)) assert.equal(defaultOf(key), DEFAULTS[CONTROLS[key].in][key], key);
   assert.equal(TARGETS.ratio.start, DEFAULTS.reduce.target.ratio);
   const chosen = new Settings();

@@ -44,7 +44,11 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
   });
 
   await t.test('every option has a control, and one that only shapes the surface does not reduce again', async () => {
+    assert.ok(await page.isVisible('#option-boundary') && await page.isVisible('#option-outliers'), 'what most scans need is in sight');
     await page.click('#more > summary');
+    assert.equal(await page.isVisible('#option-fuzzifier'), false, 'an expert looks further');
+    assert.equal(await page.$('#target-kind [value="flatness"]'), null);
+    await page.click('#expert > summary');
     for (const key of Object.keys(CONTROLS)) assert.ok(await page.isVisible(`#option-${key}`), key);
     assert.ok((await stages()).includes('cluster'));
     await site.remade(() => page.selectOption('#option-boundary', 'closed'));
@@ -75,6 +79,9 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     await site.remade(() => page.fill('#keep-field', '777'));
     assert.equal(await site.number('outputPoints'), 777);
     await site.remade(() => page.selectOption('#target-kind', 'ratio'));
+    assert.equal(await hash(), `#ratio=${Number((777 / count).toPrecision(3))}`);
+    await site.remade(() => page.fill('#keep-field', '33.3'));
+    assert.equal(await hash(), '#ratio=0.333', 'as it is shown, without the digits of a binary fraction');
     await site.remade(() => page.selectOption('#target-kind', 'tolerance'));
     assert.match(await page.innerText('#keep-count'), new RegExp(`within ${(1e-3 * DIAGONAL).toPrecision(3)}`));
     const within = await site.number('outputPoints');
@@ -88,6 +95,13 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     await site.made();
     await page.fill('#keep-field', '250');
     assert.equal(await page.$eval('#keep-field', (field) => field.validity.valid), false);
+    assert.equal(await page.getAttribute('#keep-field', 'aria-invalid'), 'true');
+    assert.equal(await page.innerText('#keep-error'), 'This takes a number above 0 %, up to 100 %.');
+    await page.fill('#option-fuzzifier', '1');
+    assert.equal(await page.innerText('#option-fuzzifier-error'), 'This takes a number above 1, up to 100.');
+    await page.fill('#option-fuzzifier', '');
+    assert.equal(await page.getAttribute('#option-fuzzifier', 'aria-invalid'), null);
+    assert.equal(await page.isVisible('#option-fuzzifier-error'), false);
     assert.equal(await page.getAttribute('#app', 'data-state'), 'ready');
   });
 

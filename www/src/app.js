@@ -11,6 +11,7 @@ import { describeKeys, listenToKeys } from './keys.js';
 import { Look } from './look/look.js';
 import { tendMenus } from './menus.js';
 import { MessageCard } from './results/messages.js';
+import { offerPictures } from './session/pictures.js';
 import { Numbers } from './results/numbers.js';
 import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
@@ -108,9 +109,11 @@ export class App {
       button.addEventListener('click', () => this.#openSample(/** @type {SampleName} */ (button.dataset.sample)));
     }
     addEventListener('hashchange', () => this.#addressChanged());
+    const savePicture = offerPictures((type, quality) => this.#look.picture(type, quality), () => this.#session.scan?.file ?? 'scan', (name) => this.#sharing.posted(name));
     /** @type {Key[]} */
     const keys = [
       ...this.#look.keys,
+      { key: 's', does: 'Save the picture', act: savePicture },
       { key: 'o', does: 'Open a scan from this device', act: this.#choose },
       { key: '?', does: 'This list', act: () => showHelp() },
       { key: 'Escape', shown: 'Esc', does: 'Close a message or menu, cancel the work', act: () => this.#escape() },

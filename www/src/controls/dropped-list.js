@@ -58,7 +58,7 @@ export class DroppedList {
       : kind === 'beside' ? say('used by a mesh that names it') : kind === 'other' ? say('looks like no scan') : '';
     if (words) row.append(element('span', { className: 'hint', textContent: words }));
     if (!open && kind !== 'beside' && !this.#failed.has(file)) {
-      const button = element('button', { type: 'button', className: 'button', textContent: say('Open'), ariaLabel: say('Open {name}', { name: path }) });
+      const button = element('button', { type: 'button', className: 'button quiet', textContent: say('Open'), ariaLabel: say('Open {name}', { name: path }) });
       button.addEventListener('click', () => this.#open(dropped));
       row.append(button);
     }

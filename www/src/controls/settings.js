@@ -26,6 +26,13 @@ import { FIELDS, TARGETS } from './fields-table.js';
 /** Options that have a control, by name. */
 export const CONTROLS = /** @type {Record<string, Control>} */ (FIELDS);
 
+/** Where each is found: beside the points to keep, among more settings, or with those for experts. */
+export const PLACES = {
+  plain: ['boundary', 'outliers'],
+  more: ['orientation', 'flip', 'sharp', 'smoothing'],
+  expert: ['method', 'fuzzifier', 'accuracy'],
+};
+
 export { TARGETS };
 
 /** @typedef {keyof typeof TARGETS} TargetKind */

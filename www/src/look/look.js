@@ -14,10 +14,10 @@ import { followTheme } from './theme.js';
  * @typedef {View | 'compare'} Choice
  */
 
-/** Room for what lies over the picture, in CSS pixels. On narrow screens the tools stand at the right. */
+/** Room for what lies over the picture, in CSS pixels. On narrow and on low screens the tools stand at the right. */
 const INSETS = { top: 72, bottom: 76 };
-const NARROW = '(max-width: 620px)';
-const TOOLS = 48;
+const ASIDE = '(max-width: 1299px), (max-height: 500px)';
+const TOOLS = 60;
 
 /** The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land and rooms, depth cameras (whose y points down), and the rest. @type {Record<Axis, string>} */
 const UPS = { y: 'Y', z: 'Z', '-y': '−Y', '-z': '−Z', x: 'X', '-x': '−X' };
@@ -40,6 +40,7 @@ export class Look {
   #edges = byId('edges', HTMLInputElement);
   #parallel = byId('parallel', HTMLInputElement);
   #boxes = byId('boxes', HTMLInputElement);
+  #pointSize = byId('point-size', HTMLInputElement);
   /** @type {Scan | null} */
   #scan = null;
   /** @type {Outcome | null} */
@@ -76,6 +77,7 @@ export class Look {
     this.#paints.addEventListener('change', (event) => this.#choosePaint(/** @type {PaintName} */ (valueOf(event))));
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
     this.#boxes.addEventListener('change', () => this.#showBoxes());
+    this.#pointSize.addEventListener('input', () => this.#sizePoints());
     this.#parallel.addEventListener('change', () => viewer && (viewer.parallel = this.#parallel.checked));
     for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-side]'))) {
       button.addEventListener('click', () => this.#lookFrom(/** @type {Side} */ (button.dataset.side)));
@@ -224,6 +226,18 @@ export class Look {
     this.#viewer?.showBoxes(this.#boxes.checked && cells ? { positions: cells, origin } : null);
   }
 
+  /** The slider's steps multiply: its middle is the size that points have of themselves, its ends a quarter and four times that. */
+  #sizePoints() {
+    const scale = 4 ** this.#pointSize.valueAsNumber;
+    if (this.#viewer) this.#viewer.pointSize = scale;
+    this.#pointSize.setAttribute('aria-valuetext', format.times(scale));
+  }
+
+  /** The picture as it is shown, without what lies over it. @param {string} type @param {number} [quality] */
+  async picture(type, quality) {
+    return (await this.#viewer?.toBlob(type, quality)) ?? null;
+  }
+
   get #subject() {
     const { cloud, frame } = this.#scan ?? {};
     return cloud && { cloud, frame, reduced: this.#outcome?.reduced, mesh: this.#outcome?.mesh };
@@ -266,9 +280,9 @@ export class Look {
 function openViewer() {
   try {
     const viewer = createViewer(byId('canvas', HTMLCanvasElement), { embedded: false, insets: INSETS });
-    const narrow = matchMedia(NARROW);
-    const follow = () => (viewer.insets = { right: narrow.matches ? TOOLS : 0 });
-    narrow.addEventListener('change', follow);
+    const aside = matchMedia(ASIDE);
+    const follow = () => (viewer.insets = { right: aside.matches ? TOOLS : 0 });
+    aside.addEventListener('change', follow);
     follow();
     return viewer;
   } catch (error) {

@@ -23,6 +23,9 @@ function superscript(/** @type {string} */ digits) {
   return digits.replace('+', '').replace('-', '⁻').replace(/\d/g, (digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)]);
 }
 
+/** A factor: 1.5×. */
+export const times = (/** @type {number} */ factor) => `${digits.format(factor)}×`;
+
 /** A fraction as a percentage with two digits. */
 export function percent(/** @type {number} */ fraction) {
   return `${new Intl.NumberFormat('en', { maximumSignificantDigits: 2 }).format(100 * fraction)} %`;
