@@ -12,6 +12,7 @@ import { likelyUp } from '../../pkg/viewer/upright.js';
 import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, PLACES, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
+import { printingWords, solidOf } from '../../www/src/results/printing.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
@@ -128,6 +129,24 @@ test('what was surveyed stands on its z, and so does what is flat', () => {
   assert.equal(likelyUp({ origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
   assert.equal(likelyUp({ seenFromAbove: true }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
+});
+
+test('what a printer asks of a mesh', () => {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, i >> 2].map((bit, axis) => 100 + bit * (axis + 1)));
+  const faces = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+  const mesh = (indices, report = {}) => ({
+    positions: Float32Array.from(corners.flat()), indices: Uint32Array.from(indices), report: { boundaryEdges: 0, nonManifoldEdges: 0, holes: [], ...report },
+  });
+  const box = solidOf(mesh(faces));
+  assert.deepEqual([box.closed, box.size], [true, [1, 2, 3]]);
+  assert.ok(Math.abs(box.volume - 6) < 1e-9);
+  assert.deepEqual(printingWords(box, 'cm'), { ready: true, words: 'Watertight, ready for 3D printing: 10 × 20 × 30 mm, 6 cm³.' });
+  assert.match(printingWords(box, undefined).words, /1 × 2 × 3 mm, 6 mm³, if a coordinate of 1 is a millimetre/);
+  assert.match(printingWords(solidOf(mesh(faces.toReversed())), 'mm').words, /inside out/);
+  const holes = [{ diameter: 0.1, closed: false }, { diameter: 0.1, closed: true }, { diameter: 0.2, closed: false }];
+  assert.deepEqual(printingWords(solidOf(mesh(faces.slice(6), { boundaryEdges: 8, holes })), 'mm'), { ready: false, words: 'Not ready for 3D printing: it has 2 holes or open borders.' });
+  assert.match(printingWords(solidOf(mesh(faces, { nonManifoldEdges: 1 })), 'mm').words, /not watertight/);
+  assert.match(printingWords(box, 'deg').words, /degrees/);
 });
 
 test('what is kept, in words', () => {

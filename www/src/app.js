@@ -55,7 +55,7 @@ export class App {
   #dropped = new DroppedList((dropped) => this.#openOne(dropped.file));
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
-  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
+  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
   #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, 'comparison'));
 
@@ -243,6 +243,11 @@ export class App {
   /** Keeps so many points: chosen in the chart. */
   #keep(/** @type {number} */ count) {
     this.#session.settings.target = { kind: 'count', value: count };
+    this.#settingsChanged();
+  }
+
+  #closeHoles() {
+    this.#session.settings.set('boundary', 'closed');
     this.#settingsChanged();
   }
 

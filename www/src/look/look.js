@@ -16,7 +16,7 @@ import { followTheme } from './theme.js';
 
 /** Room for what lies over the picture, in CSS pixels. On narrow and on low screens the tools stand at the right. */
 const INSETS = { top: 72, bottom: 76 };
-const ASIDE = '(max-width: 1299px), (max-height: 500px)';
+const ASIDE = '(max-width: 1239px), (max-height: 500px)';
 const TOOLS = 60;
 
 /** The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land and rooms, depth cameras (whose y points down), and the rest. @type {Record<Axis, string>} */
@@ -55,7 +55,7 @@ export class Look {
   #paint = 'natural';
   /** The layers that have these colours; the others get them when they are shown. @type {Map<View, Paint>} */
   #painted = new Map();
-  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null);
+  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
   #split = new Split(() => this.#show(this.#view));
 
   /**

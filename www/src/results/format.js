@@ -36,6 +36,12 @@ export function duration(/** @type {number} */ ms) {
   return ms < 60_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.floor(ms / 60_000)} min ${Math.round((ms % 60_000) / 1000)} s`;
 }
 
+/** A volume in cubic millimetres, in the unit that suits its size. */
+export function volume(/** @type {number} */ cubic) {
+  const [unit, factor] = cubic < 1000 ? ['mm³', 1] : cubic < 1e9 ? ['cm³', 1e3] : ['m³', 1e9];
+  return `${length(cubic / Number(factor))} ${unit}`;
+}
+
 export function bytes(/** @type {number} */ n) {
   return n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${digits.format(n / 1e6)} MB`;
 }

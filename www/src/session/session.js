@@ -1,5 +1,6 @@
 import { createEngine, flip, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
+import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { splitOrigin } from './origin.js';
 import { SAMPLES } from '../controls/samples.js';
@@ -68,7 +69,16 @@ export class Session extends EventTarget {
    */
   openFile(file, { columns, beside } = {}) {
     const source = { title: file.name, file: stem(file.name), given: file };
-    return this.#open(source, (signal) => read(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) }));
+    return this.#open(source, async (signal) => {
+      const options = { name: file.name, columns, beside, signal, onProgress: this.#report(signal) };
+      return read(file, options).catch(async (error) => {
+        // The page's own small files, and those of other programs.
+        if (error?.code !== 'unsupported-file' || error.found !== COMPRESSED) throw error;
+        const plain = await expandAside(new Uint8Array(await file.arrayBuffer()));
+        signal.throwIfAborted();
+        return read(plain, options);
+      });
+    });
   }
 
   /** Keeps with the scan, and with what was made of it, which way is up and what a coordinate is. */
@@ -187,12 +197,12 @@ export class Session extends EventTarget {
   /**
    * The bytes of a file of what was made.
    * @param {'reduced' | 'mesh'} what
-   * @param {import('pointweave').OutputFormat} format
+   * @param {import('pointweave').WriteOptions} options
    */
-  async file(what, format) {
+  async file(what, options) {
     const result = this.outcome?.[what];
     if (!result) throw new Error(`there is no ${what} to write yet`);
-    return write(result, { format });
+    return write(result, options);
   }
 
   /**
