@@ -271,7 +271,7 @@ export class Look {
   }
 
   /** Stands what is shown on another side, or on a plane with that normal. */
-  stand(/** @type {Axis | [number, number, number]} */ up) {
+  stand(/** @type {Axis | [number, number, number] | 'auto'} */ up) {
     if (this.#viewer) this.#viewer.up = up;
   }
 }
