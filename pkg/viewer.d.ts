@@ -244,6 +244,8 @@ export interface Subject {
   reduced?: ReducedCloud | null;
   /** For `'error'`, computed with `distances: true`. */
   mesh?: SurfaceMesh | null;
+  /** Another mesh of the same cloud, to be compared: the scale of `'error'` suits both. */
+  beside?: SurfaceMesh | null;
   /** Of the cloud, where it is known. */
   frame?: Frame;
 }

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { PATIENCE, start } from './browser.mjs';
+import { difference } from './pictures.mjs';
 import { spherePoints, toXyz } from './scans.mjs';
 
 const ball = toXyz(spherePoints(1200));
@@ -111,5 +112,40 @@ test('steps back and forth, and a reload', { timeout: PATIENCE }, async (t) => {
     assert.match(await site.message(), /not kept any more[^]*A sample is shown instead/);
   });
 
+  assert.deepEqual(site.faults, []);
+});
+
+test('a mesh that was kept stands beside one of other settings, with sizes and errors', { timeout: PATIENCE }, async (t) => {
+  const server = await start(t);
+  const site = await server.open({}, undefined, `?src=${server.serve('ball.xyz', ball)}#count=900`);
+  const { page } = site;
+  await site.opened('ball.xyz');
+  assert.equal(await page.isEnabled('#split-left option[value="kept"]'), false);
+  const many = await site.pictureOf('mesh');
+  const error = await page.innerText('[data-number="errorRmsShare"]');
+  await page.click('#keep-mesh');
+  await site.remade(() => page.fill('#keep-field', '300'));
+  assert.equal(await site.view(), 'compare');
+  const [left, right] = [await page.innerText('#split-left-words'), await page.innerText('#split-right-words')];
+  assert.match(left, /^900 points, [\d.]+K triangles, RMS /);
+  assert.ok(left.endsWith(error), `${left} has ${error}`);
+  assert.match(right, /^300 points, \d+ triangles, RMS /);
+  const both = await site.picture();
+  assert.ok(difference(both, many, 0, 0.49) < 0.001, 'the kept mesh is at the left');
+  const highest = async () => Number(await page.$$eval('#legend .legend-ends data', (ends) => ends.at(-1).value));
+  await site.paint('error');
+  const scale = await highest();
+  await page.selectOption('#split-left', 'points');
+  await page.selectOption('#split-right', 'kept');
+  assert.equal(await highest(), scale, 'errors of both have one scale');
+  await page.selectOption('#split-left', 'kept');
+  await page.selectOption('#split-right', 'mesh');
+  await site.paint('natural');
+  assert.ok(difference(both, await site.pictureOf('mesh'), 0.51, 1) < 0.001, 'the one of now at the right');
+  await site.remade(() => page.fill('#keep-field', '400'));
+  assert.equal(await site.view(), 'mesh', 'who looks at something else stays there');
+  await site.drop('pair.xyz', pair);
+  await site.opened('pair.xyz');
+  assert.equal(await page.inputValue('#split-left'), 'points', 'another scan has nothing to compare with');
   assert.deepEqual(site.faults, []);
 });

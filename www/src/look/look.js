@@ -1,6 +1,7 @@
 import { PAINTS, PAINT_WORDS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
 import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
+import { say } from '../words/say.js';
 import { Legend } from './legend.js';
 import { PieceChoice } from './piece.js';
 import { Split } from './split.js';
@@ -10,8 +11,8 @@ import { followTheme } from './theme.js';
  * @import { Axis, Paint, PaintName, Side } from 'pointweave/viewer'
  * @import { Key } from '../keys.js'
  * @import { Outcome, Scan } from '../session/session.js'
- * @typedef {'points' | 'reduced' | 'mesh'} View
- * @typedef {View | 'compare'} Choice
+ * @typedef {'points' | 'reduced' | 'mesh' | 'kept'} View `kept`: a mesh of other settings, to compare with
+ * @typedef {'points' | 'reduced' | 'mesh' | 'compare'} Choice
  */
 
 /** Room for what lies over the picture, in CSS pixels. On narrow and on low screens the tools stand at the right. */
@@ -45,6 +46,11 @@ export class Look {
   #scan = null;
   /** @type {Outcome | null} */
   #outcome = null;
+  /** What was kept to be compared with. @type {Outcome | null} */
+  #kept = null;
+  /** It has been put beside another. */
+  #beside = false;
+  #keep = byId('keep-mesh', HTMLButtonElement);
   /** @type {Choice} */
   #view = 'points';
   /** The person's choice for this scan; finishing a job does not change it. @type {Choice | null} */
@@ -78,6 +84,7 @@ export class Look {
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
     this.#boxes.addEventListener('change', () => this.#showBoxes());
     this.#pointSize.addEventListener('input', () => this.#sizePoints());
+    this.#keep.addEventListener('click', () => this.#keepMesh());
     this.#parallel.addEventListener('change', () => viewer && (viewer.parallel = this.#parallel.checked));
     for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-side]'))) {
       button.addEventListener('click', () => this.#lookFrom(/** @type {Side} */ (button.dataset.side)));
@@ -99,7 +106,9 @@ export class Look {
 
   opened(/** @type {Scan} */ scan) {
     this.#scan = scan;
-    this.#outcome = null;
+    this.#outcome = this.#kept = null;
+    this.#keep.hidden = true;
+    this.#split.offerKept(false);
     if (!this.#wished) this.#chosen = null;
     this.#wished = false;
     this.#viewer?.show(bare({ ...scan.cloud, normals: undefined }), { frame: scan.frame });
@@ -115,8 +124,28 @@ export class Look {
     this.#viewer?.set('mesh', mesh && bare(mesh));
     for (const view of VIEWS) radio('view', view).disabled = view === 'mesh' && !mesh;
     this.#split.offerMesh(Boolean(mesh));
+    this.#keep.hidden = !mesh;
     this.#showBoxes();
+    if (this.#kept && mesh && !this.#beside) {
+      this.#beside = true;
+      this.#split.putBeside();
+      this.#chosen = 'compare';
+      this.#changed();
+    }
     this.#settle();
+  }
+
+  /** Keeps the mesh, so that the next one is shown beside it. */
+  #keepMesh() {
+    const outcome = this.#outcome;
+    if (!outcome?.mesh) return;
+    this.#kept = outcome;
+    this.#beside = false;
+    this.#viewer?.set('kept', bare(outcome.mesh));
+    this.#painted.delete('kept');
+    this.#split.offerKept(true);
+    this.#show(this.#view);
+    announce(say('The mesh is kept. The next one is shown beside it.'));
   }
 
   /** Has the person choose a triangle of the mesh in the picture, or no more. @param {import('./piece.js').Chosen | null} chosen */
@@ -174,6 +203,7 @@ export class Look {
     const compared = view === 'compare';
     this.#split.show(compared);
     const { left, right } = this.#split.sides;
+    this.#split.describe((side) => (side === 'kept' ? this.#kept : this.#outcome));
     if (compared) this.#color(left);
     const paint = this.#color(compared ? right : view);
     this.#legend.show(paint?.legend ?? null);
@@ -183,10 +213,11 @@ export class Look {
   /** Gives a layer the chosen colours, unless it has them. */
   #color(/** @type {View} */ view) {
     const known = this.#painted.get(view);
-    const subject = this.#subject;
-    const drawn = view === 'points' || Boolean(this.#outcome?.[view]);
+    const [layer, outcome] = view === 'kept' ? /** @type {const} */ (['mesh', this.#kept]) : [view, this.#outcome];
+    const subject = this.#subjectOf(outcome);
+    const drawn = layer === 'points' || Boolean(outcome?.[layer]);
     if (known || !subject || !drawn) return known;
-    const paint = paintOf(this.#paint, view, subject, WORDS);
+    const paint = paintOf(this.#paint, layer, subject, WORDS);
     this.#viewer?.paint(view, paint);
     this.#painted.set(view, paint);
     return paint;
@@ -239,8 +270,13 @@ export class Look {
   }
 
   get #subject() {
+    return this.#subjectOf(this.#outcome);
+  }
+
+  #subjectOf(/** @type {Outcome | null} */ outcome) {
     const { cloud, frame } = this.#scan ?? {};
-    return cloud && { cloud, frame, reduced: this.#outcome?.reduced, mesh: this.#outcome?.mesh };
+    const other = outcome === this.#kept ? this.#outcome : this.#kept;
+    return cloud && { cloud, frame, reduced: outcome?.reduced, mesh: outcome?.mesh, beside: other?.mesh };
   }
 
   #lookFrom(/** @type {Side} */ side) {
