@@ -9,7 +9,6 @@ import { UNKNOWN, colorAt, colorize } from '../../pkg/viewer/colormap.js';
 import { localSpacing } from '../../pkg/viewer/density.js';
 import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
 import { likelyUp } from '../../pkg/viewer/upright.js';
-import { countHoles } from '../../www/src/look/holes.js';
 import { CONTROLS, PLACES, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
 import { printingWords, solidOf } from '../../www/src/results/printing.js';
@@ -57,21 +56,6 @@ test('the spacing of a plane of points is found, whichever way it lies', () => {
       assert.ok(Math.abs(median / spacing - 1) < 0.08, `${median} of ${spacing}`);
     }
   }
-});
-
-test('holes are counted by their rims', () => {
-  const grid = (has) => {
-    const triangles = [];
-    for (let x = 0; x < 8; x++) for (let y = 0; y < 8; y++) {
-      const v = (dx, dy) => (x + dx) * 9 + y + dy;
-      if (has(x, y)) triangles.push(v(0, 0), v(1, 0), v(1, 1), v(0, 0), v(1, 1), v(0, 1));
-    }
-    return Uint32Array.from(triangles);
-  };
-  assert.equal(countHoles(grid(() => true), 81), 1);
-  assert.equal(countHoles(grid((x, y) => !(x === 2 && y === 2)), 81), 2);
-  assert.equal(countHoles(grid((x, y) => !(y === 4) && !(x === 2 && y === 2) && !(x === 6 && y === 6)), 81), 4);
-  assert.equal(countHoles(Uint32Array.of(0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2), 4), 0);
 });
 
 test('sharp places are on the edges of the part, and hardly anywhere on the duck', async () => {

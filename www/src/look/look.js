@@ -1,14 +1,16 @@
-import { PAINTS, PAINT_WORDS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
+import { PAINTS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
 import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { Legend } from './legend.js';
+import { WORDS } from './paint-words.js';
+import { Painting } from './painting.js';
 import { PieceChoice } from './piece.js';
 import { Split } from './split.js';
 import { followTheme } from './theme.js';
 
 /**
- * @import { Axis, Paint, PaintName, Side } from 'pointweave/viewer'
+ * @import { Axis, Paint, PaintName, Side, Subject } from 'pointweave/viewer'
  * @import { Key } from '../keys.js'
  * @import { Outcome, Scan } from '../session/session.js'
  * @typedef {'points' | 'reduced' | 'mesh' | 'kept'} View `kept`: a mesh of other settings, to compare with
@@ -23,8 +25,8 @@ const TOOLS = 60;
 /** The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land and rooms, depth cameras (whose y points down), and the rest. @type {Record<Axis, string>} */
 const UPS = { y: 'Y', z: 'Z', '-y': '−Y', '-z': '−Z', x: 'X', '-x': '−X' };
 
-/** Legends in the page's numbers. */
-const WORDS = { ...PAINT_WORDS, length: format.length, percent: format.percent };
+/** Paints that cost nothing: colours that are there already. */
+const READY = new Set(['natural', 'plain']);
 
 const VIEWS = /** @type {const} */ (['points', 'reduced', 'mesh', 'compare']);
 const NAMES = { points: 'Scan', reduced: 'Reduced points', mesh: 'Mesh', compare: 'Comparison' };
@@ -61,6 +63,9 @@ export class Look {
   #paint = 'natural';
   /** The layers that have these colours; the others get them when they are shown. @type {Map<View, Paint>} */
   #painted = new Map();
+  #painting = new Painting();
+  /** Layers whose colours are being made. @type {Set<View>} */
+  #awaited = new Set();
   #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
   #split = new Split(() => this.#show(this.#view));
 
@@ -107,6 +112,7 @@ export class Look {
   opened(/** @type {Scan} */ scan) {
     this.#scan = scan;
     this.#outcome = this.#kept = null;
+    this.#painting.reset();
     this.#keep.hidden = true;
     this.#split.offerKept(false);
     if (!this.#wished) this.#chosen = null;
@@ -143,6 +149,7 @@ export class Look {
     this.#beside = false;
     this.#viewer?.set('kept', bare(outcome.mesh));
     this.#painted.delete('kept');
+    this.#awaited.delete('kept');
     this.#split.offerKept(true);
     this.#show(this.#view);
     announce(say('The mesh is kept. The next one is shown beside it.'));
@@ -205,8 +212,9 @@ export class Look {
     const { left, right } = this.#split.sides;
     this.#split.describe((side) => (side === 'kept' ? this.#kept : this.#outcome));
     if (compared) this.#color(left);
-    const paint = this.#color(compared ? right : view);
-    this.#legend.show(paint?.legend ?? null);
+    const seen = compared ? right : /** @type {View} */ (view);
+    const paint = this.#color(seen);
+    this.#legend.show(paint?.legend ?? null, this.#awaited.has(seen));
     if (this.#viewer) this.#viewer.view = compared ? { left, right, at: this.#split.at } : view;
   }
 
@@ -217,7 +225,24 @@ export class Look {
     const subject = this.#subjectOf(outcome);
     const drawn = layer === 'points' || Boolean(outcome?.[layer]);
     if (known || !subject || !drawn) return known;
-    const paint = paintOf(this.#paint, layer, subject, WORDS);
+    if (READY.has(this.#paint) || !canPaint(this.#paint, subject)) return this.#put(view, paintOf(this.#paint, layer, subject, WORDS));
+    if (!this.#awaited.has(view)) this.#make(view, layer, subject);
+    return undefined;
+  }
+
+  /** Has colours made that take a while. @param {View} view @param {'points' | 'reduced' | 'mesh'} layer @param {Subject} subject */
+  async #make(view, layer, subject) {
+    const awaited = this.#awaited.add(view);
+    this.#root.dataset.painting = '';
+    const paint = await this.#painting.paint(this.#paint, layer, subject);
+    if (awaited !== this.#awaited) return;
+    awaited.delete(view);
+    if (!awaited.size) delete this.#root.dataset.painting;
+    this.#put(view, paint);
+    this.#show(this.#view);
+  }
+
+  #put(/** @type {View} */ view, /** @type {Paint} */ paint) {
     this.#viewer?.paint(view, paint);
     this.#painted.set(view, paint);
     return paint;
@@ -242,6 +267,8 @@ export class Look {
   /** What can be chosen now; every layer is to be coloured anew. */
   #offerPaints() {
     this.#painted.clear();
+    this.#awaited = new Set();
+    delete this.#root.dataset.painting;
     const subject = this.#subject;
     if (!subject) return;
     for (const name of PAINTS) {
