@@ -185,7 +185,7 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-multivalue",
 ];
 
-/// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
+/// `cargo xtask build`: what is written from the table of options, the builds of pkg/wasm and the element in one file.
 pub fn build() -> Result<()> {
     make(&Build::ALL)
 }
@@ -195,7 +195,8 @@ pub fn ensure() -> Result<()> {
     let is_old = |build: &Build| !build.is_current();
     let old: Vec<Build> = Build::ALL.into_iter().filter(is_old).collect();
     if old.is_empty() {
-        return options::write();
+        options::write()?;
+        return one_file();
     }
     make(&old)
 }
@@ -205,13 +206,21 @@ fn make(builds: &[Build]) -> Result<()> {
     let builder = Builder::ready()?;
     let begin = |build: Build| say(&format!("building wasm, {}", build.name()));
     let (threads, others): (Vec<Build>, Vec<Build>) =
-        (builds.iter()).partition(|&&build| build == Build::Threads);
+        (builds.iter().copied()).partition(|&build| build == Build::Threads);
     // Two target folders, so two at once: the optimiser of a build takes one core.
     thread::scope(|scope| {
         let beside = scope.spawn(|| builder.make_all(&threads, begin));
         let made = builder.make_all(&others, begin);
         beside.join().expect("no panic").and(made)
-    })
+    })?;
+    one_file()
+}
+
+/// `pkg/element.min.js`, made of the package's modules in no time.
+fn one_file() -> Result<()> {
+    packages::npm(&root().join("xtask"))?;
+    let remedy = "the element's one file was not made; the error is above";
+    run(command("node").arg("xtask/element.mjs"), remedy)
 }
 
 /// What the builds are made with.
