@@ -133,7 +133,9 @@ pub(super) fn header_names<'a>(
     dialect: Dialect,
     width: usize,
 ) -> Option<(&'a Numbered, Vec<String>)> {
-    before.iter().rev().find_map(|line| {
+    /// Lines above the rows.
+    const MOST: usize = 64;
+    before.iter().rev().take(MOST).find_map(|line| {
         let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
         let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
         let text = &bytes[marks..];
