@@ -154,9 +154,20 @@ pub(super) fn header_names<'a>(
 
 /// The names in a line that name x, y and z.
 fn names_within(text: &[u8], dialect: Dialect, width: usize) -> Option<Vec<String>> {
+    // Names have letters.
+    if !text
+        .iter()
+        .any(|b| b.is_ascii_alphabetic() || !b.is_ascii())
+    {
+        return None;
+    }
     let others = DIALECTS
         .into_iter()
-        .filter(|other| !other.decimal_comma && *other != dialect);
+        .filter(|other| !other.decimal_comma && *other != dialect)
+        .filter(|other| match other.delimiter {
+            Delimiter::Mark(mark) => text.contains(&mark),
+            _ => true,
+        });
     let own = names_of(text, dialect);
     // Names that are as many as the columns are no others, taken apart.
     let fits = own.len() == width;
