@@ -421,6 +421,8 @@ fn messages_say_what_is_there() {
             "a VTK file in XML",
         ),
         (b"Kaydara FBX Binary  \x00", "an FBX scene"),
+        (b"  0\r\nSECTION\r\n", "a DXF drawing"),
+        (b"\x93NUMPY\x01\x00", "an array of NumPy"),
         (b"DSRB\0\0\0\0", "a Surfer grid in binary"),
         (b"{\"asset\":{\"version\":\"2.0\"}}", "a glTF scene as text"),
         (b"\x00\x01\x02\xfe\xff", "the bytes 00 01 02 fe ff"),

@@ -2,6 +2,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use miniz_oxide::deflate::compress_to_vec;
+use pointweave::cloud::Unit;
 use pointweave::formats::{
     Archive, FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, detect, read, read_with,
 };
@@ -173,7 +174,12 @@ fn tiff(
         .new_image::<colortype::Gray32Float>(5, 4)
         .expect("an image");
     for (tag, values) in tags {
-        image.encoder().write_tag(*tag, &values[..]).expect("a tag");
+        if *tag == Tag::GeoKeyDirectoryTag {
+            let keys: Vec<u16> = values.iter().map(|value| *value as u16).collect();
+            image.encoder().write_tag(*tag, &keys[..]).expect("a tag");
+        } else {
+            image.encoder().write_tag(*tag, &values[..]).expect("a tag");
+        }
     }
     if let Some(missing) = missing {
         image
@@ -223,6 +229,19 @@ fn heights_of_a_geotiff_are_where_it_says() {
             }
         }
     }
+    // The reference system tells the unit; the text of what is no data has more digits than a cell.
+    let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 25832].map(f64::from);
+    let tags = [
+        scale.clone(),
+        tie.clone(),
+        (Tag::GeoKeyDirectoryTag, keys.into()),
+    ];
+    let cloud = both(
+        &tiff(Compression::Lzw, 4, &tags, Some("7.0000001")),
+        Format::Tiff,
+    );
+    assert_eq!((cloud.points(), cloud.unit), (19, Some(Unit::Metre)));
+    assert!(cloud.crs.is_some());
     let bare = tiff(Compression::Uncompressed, 4, &[], None);
     assert_eq!(values(&both(&bare, Format::Tiff))[..3], [0.5, -0.5, 0.0]);
     let whole = tiff(Compression::Lzw, 2, &[scale, tie], None);

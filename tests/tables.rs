@@ -247,6 +247,31 @@ fn rows_in_brackets_and_quotes_in_quotes() {
 }
 
 #[test]
+fn counts_of_scans_rows_and_columns_are_never_x() {
+    for (front, roles) in [
+        (
+            (|i| format!("{}", i / 10)) as fn(usize) -> String,
+            "-,x,y,z",
+        ),
+        (|i| format!("{} {}", i / 8, i % 8), "-,-,x,y,z"),
+        (|i| format!("{} {} {}", i + 1, i / 8, i % 8), "-,-,-,x,y,z"),
+    ] {
+        let plain = |[x, y, z]: [String; 3]| format!("{x}0 {y}0 {z}0");
+        let text = table("", |place, i| {
+            let place = place.map(|x| if x.contains('.') { x } else { x + "." });
+            format!("{} {}", front(i), plain(place))
+        });
+        assert_eq!(right(&text).columns.join(","), roles);
+    }
+    // Whole coordinates of a grid stay, with heights and normals behind them.
+    let grid: String = (0..40)
+        .map(|i| format!("{} {} {}.5 0.0 0.6 0.8\n", i / 8, i % 8, i % 3))
+        .collect();
+    let cloud = read(grid.as_bytes(), Format::Xyz).expect("a table");
+    assert_eq!(cloud.columns.join(","), "x,y,z,nx,ny,nz");
+}
+
+#[test]
 fn a_time_in_front_is_never_x() {
     for (start, step) in [(1.6e9, 0.1), (1.6e18, 1e8)] {
         let text = table("", |[x, y, z], i| {

@@ -101,7 +101,7 @@ fn is_model(head: &[u8]) -> bool {
 
 /// The name of a format that is recognised by its first bytes but has no reader here.
 fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
-    const SIGNATURES: [(&[u8], &str); 32] = [
+    const SIGNATURES: [(&[u8], &str); 40] = [
         (b"\xff\xfe", "UTF-16 text"),
         (b"\xfe\xff", "UTF-16 text"),
         (b"PK\x03\x04", "a ZIP archive"),
@@ -135,6 +135,14 @@ fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
         (b"\x89HDF", "an HDF5 file"),
         (b"CDF\x01", "a NetCDF file"),
         (b"#ROSBAG", "a ROS bag"),
+        (b"CCB2", "a project of CloudCompare (.bin)"),
+        (b"\x93NUMPY", "an array of NumPy"),
+        (b"\x89MCAP", "a recording of ROS (MCAP)"),
+        (b"MATLAB 5.0", "data of MATLAB"),
+        (b"SQLite format 3", "a database"),
+        (b"NVM_V3", "a reconstruction of VisualSFM"),
+        (b"# Bundle file", "a reconstruction of Bundler"),
+        (b"\xd4\xc3\xb2\xa1", "a capture of packets (PCAP)"),
         (b"DSBB", "a Surfer grid in binary, not as text"),
         (b"DSRB", "a Surfer grid in binary, not as text"),
     ];
@@ -144,6 +152,11 @@ fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
         .map(|(_, name)| *name);
     if head.get(257..262) == Some(b"ustar") {
         return Some("a tar archive");
+    }
+    // The first group and its code, each in a line.
+    let mut lines = head.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    if (lines.next(), lines.next()) == (Some(b"0"), Some(b"SECTION")) {
+        return Some("a DXF drawing");
     }
     match known {
         Some("an XML or HTML document") => Some(xml_kind(head)),

@@ -412,11 +412,11 @@ def write_rasters():
     square = rasterio.Affine(2.0, 0.0, 455_000.0, 0.0, -2.0, 5_412_000.0)
     kinds = {
         "stored.tif": dict(), "deflate.tif": dict(compress="deflate", predictor=3), "lzw.tif": dict(compress="lzw", predictor=2, dtype="int16"),
-        "tiled.tif": dict(tiled=True, blockxsize=16, blockysize=16, compress="packbits"), "double.tif": dict(dtype="float64", BIGTIFF="YES"),
+        "tiled.tif": dict(tiled=True, blockxsize=16, blockysize=16, compress="packbits"), "double.tif": dict(dtype="float64", BIGTIFF="YES"), "fraction.tif": dict(nodata=-9999.9),
         "heights.asc": dict(driver="AAIGrid"),
     }
     for file, how in kinds.items():
-        profile = dict(driver="GTiff", width=columns, height=rows, count=1, dtype="float32", nodata=-9999, transform=turned) | how
+        profile = dict(driver="GTiff", width=columns, height=rows, count=1, dtype="float32", nodata=-9999, transform=turned, crs="EPSG:25832") | how
         if profile["driver"] == "AAIGrid":
             # It writes copies alone, with cells that are square.
             with rasterio.open(theirs("copied.tif"), "w", **(profile | dict(driver="GTiff", transform=square))) as raster:
@@ -425,14 +425,16 @@ def write_rasters():
             os.remove(theirs("copied.tif"))
         else:
             with rasterio.open(theirs(file), "w", **profile) as raster:
-                raster.write(heights.astype(profile["dtype"]), 1)
+                raster.write(np.where(heights == -9999, profile["nodata"], heights).astype(profile["dtype"]), 1)
         with rasterio.open(theirs(file)) as raster:
             values = raster.read(1, masked=True)
             row, column = np.nonzero(~values.mask)
             east, north = raster.xy(row, column)
             positions = np.column_stack([east, north, values[row, column]])
             skipped = {"no-data": int(values.mask.sum())}
-        meant(file, "rasterio", positions, up=[0, 0, 1], skipped=skipped, tolerance=1e-6)
+        # Pointweave goes from tile to tile.
+        unit = None if file.endswith(".asc") else "m"
+        meant(file, "rasterio", positions, up=[0, 0, 1], unit=unit, skipped=skipped, tolerance=1e-6, sorted=file == "tiled.tif")
 
 
 def write_ptx():

@@ -7,6 +7,7 @@ use super::super::options::ReadOptions;
 use super::super::parser::{Parser, Step};
 use super::super::table::{Columns, Table};
 use crate::base::error::Result;
+use crate::cloud::Crs;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tiff::decoder::{Decoder, DecodingResult};
@@ -17,12 +18,14 @@ use tiff::{ColorType, TiffError, TiffResult};
 #[derive(Default)]
 pub(in super::super) struct Tiff {
     keep: bool,
+    crs: Option<Crs>,
 }
 
 impl Tiff {
     pub(in super::super) fn new(options: &ReadOptions) -> Tiff {
         Tiff {
             keep: options.keep_sentinels,
+            crs: None,
         }
     }
 }
@@ -34,7 +37,8 @@ impl Parser for Tiff {
         }
         let bytes = input.rest();
         let keep = self.keep;
-        let read = AssertUnwindSafe(|| read(bytes, keep, table));
+        let crs = &mut self.crs;
+        let read = AssertUnwindSafe(|| read(bytes, keep, table, crs));
         let bad = |found: String| input.bad_byte(0, "an elevation grid that is whole", found);
         match catch_unwind(read) {
             Ok(Ok(None)) => Ok(Step::Done),
@@ -48,13 +52,22 @@ impl Parser for Tiff {
             Err(_) => Err(bad("damaged content".into())),
         }
     }
+
+    fn crs(&self) -> Option<Crs> {
+        self.crs.clone()
+    }
 }
 
 /// From cells to the ground: `[x per column, x per row, x of the first corner]`, then y.
 type Placing = [[f64; 3]; 2];
 
 /// Reads the cells; says what the file is where it is none of heights.
-fn read(bytes: &[u8], keep: bool, table: &mut Option<Table>) -> TiffResult<Option<String>> {
+fn read(
+    bytes: &[u8],
+    keep: bool,
+    table: &mut Option<Table>,
+    crs: &mut Option<Crs>,
+) -> TiffResult<Option<String>> {
     let mut file = Decoder::new(Cursor::new(bytes))?;
     let (width, height) = file.dimensions()?;
     let bits = match file.colortype()? {
@@ -70,6 +83,7 @@ fn read(bytes: &[u8], keep: bool, table: &mut Option<Table>) -> TiffResult<Optio
         return Ok(Some(format!("a picture of {bits} bits")));
     }
     let placing = placing.unwrap_or([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]);
+    *crs = reference_system(&mut file)?;
     let no_data = file.find_tag(Tag::GdalNodata)?;
     let no_data = no_data.and_then(|value| value.into_string().ok());
     let no_data: Option<f64> = no_data.and_then(|text| text.trim_matches(['\0', ' ']).parse().ok());
@@ -96,7 +110,9 @@ fn read(bytes: &[u8], keep: bool, table: &mut Option<Table>) -> TiffResult<Optio
         for row in 0..high {
             for column in 0..wide {
                 let z = value(&heights, (row * wide + column) as usize);
-                if Some(z) == no_data && !keep {
+                // Its text has more digits than a cell.
+                let is_none = |none: f64| z == none || z as f32 == none as f32;
+                if no_data.is_some_and(is_none) && !keep {
                     table.no_data += 1;
                     continue;
                 }
@@ -146,6 +162,27 @@ fn placing(file: &mut Decoder<Cursor<&[u8]>>) -> TiffResult<Option<Placing>> {
         }
     }
     Ok(Some(placing))
+}
+
+/// The reference system that the file's keys say.
+fn reference_system(file: &mut Decoder<Cursor<&[u8]>>) -> TiffResult<Option<Crs>> {
+    let keys = file.find_tag(Tag::GeoKeyDirectoryTag)?;
+    let doubles = file.find_tag(Tag::GeoDoubleParamsTag)?;
+    let ascii = file.find_tag(Tag::GeoAsciiParamsTag)?;
+    // What is of another type says nothing.
+    let crs = Crs {
+        keys: keys
+            .and_then(|value| value.into_u16_vec().ok())
+            .unwrap_or_default(),
+        doubles: doubles
+            .and_then(|value| value.into_f64_vec().ok())
+            .unwrap_or_default(),
+        ascii: ascii
+            .and_then(|value| value.into_string().ok())
+            .unwrap_or_default(),
+        ..Crs::default()
+    };
+    Ok(Some(crs).filter(|crs| !crs.is_empty()))
 }
 
 fn value(values: &DecodingResult, i: usize) -> f64 {

@@ -185,6 +185,8 @@ pub(super) fn guess(columns: &[Column], counted: bool) -> Guess {
         && first.distinct() == first.values.len()
         && first.rises();
     let numeric = &numeric[usize::from(index)..];
+    let counts = counts_in_front(&of(numeric));
+    let numeric = &numeric[counts..];
     let (place, rest) = numeric.split_at(numeric.len().min(3));
     let mut name = |places: &[usize], names: &[&str]| {
         let named = places.iter().zip(names);
@@ -211,7 +213,7 @@ pub(super) fn guess(columns: &[Column], counted: bool) -> Guess {
     let written =
         (place.last().map_or(0, |z| z + 1)..columns.len()).find(|&i| columns[i].is_written_color());
     let packed = packed.or(written);
-    let mut weak = index || may_be_time || others;
+    let mut weak = index || counts > 0 || may_be_time || others;
     if let Some(at) = packed.filter(|_| layout.is_none_or(|layout| layout == [Field::Intensity])) {
         name(&[at], &["rgb"]);
     } else if let Some(layout) = layout {
@@ -238,6 +240,28 @@ pub(super) fn guess(columns: &[Column], counted: bool) -> Guess {
         }
     }
     Guess { roles, weak }
+}
+
+/// How many columns before x, y and z are counts: the number of a scan, or row and column of its grid. They are whole and start at 0
+/// or 1, and three columns with decimal places follow; normals behind x, y and z have such places, too.
+fn counts_in_front(columns: &[&Column]) -> usize {
+    const ENOUGH: usize = 8;
+    let is_count = |column: &&Column| {
+        let least = column.values.iter().copied().fold(f64::INFINITY, f64::min);
+        column.values.len() >= ENOUGH && column.is_whole() && (0.0..=1.0).contains(&least)
+    };
+    let is_measured = |column: &&Column| 2 * column.fractions >= column.values.len();
+    let has_normals = columns.get(3..6).is_some_and(is_unit);
+    let fits = |counts: &usize| {
+        columns.len() >= counts + 3
+            && columns[..*counts].iter().all(is_count)
+            && columns[*counts..counts + 3].iter().all(is_measured)
+    };
+    [2, 1]
+        .into_iter()
+        .find(fits)
+        .filter(|_| !has_normals)
+        .unwrap_or(0)
 }
 
 /// Where among many columns the three are that are most likely a colour: they have many values, which are alike.

@@ -21,7 +21,7 @@ pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> boo
         values.by_ref().take(3).all(|value| value.contains(&b'.'))
     };
     match tokens.as_slice() {
-        [first, rest @ ..] if first.is_empty() => !below.is_empty() && numbers(rest),
+        [[], rest @ ..] => !below.is_empty() && numbers(rest),
         all => {
             below.len() >= 3 && numbers(all) && below.iter().take(100).all(|line| has_places(&line))
         }
@@ -133,7 +133,9 @@ pub(super) fn header_names<'a>(
     dialect: Dialect,
     width: usize,
 ) -> Option<(&'a Numbered, Vec<String>)> {
-    before.iter().rev().find_map(|line| {
+    /// Lines above the rows.
+    const MOST: usize = 64;
+    before.iter().rev().take(MOST).find_map(|line| {
         let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
         let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
         let text = &bytes[marks..];

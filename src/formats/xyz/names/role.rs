@@ -94,13 +94,12 @@ fn single(word: &str) -> Option<Role> {
         ("point", ""),
         ("pos", ""),
     ];
-    let letter = ["x", "y", "z"].iter().position(|letter| {
-        let whole = |(before, after): &(&str, &str)| word == format!("{before}{letter}{after}");
-        glued.iter().any(whole)
-    });
-    let lettered = ["x", "y", "z"]
+    let axis = |letter: &str| ["x", "y", "z"].iter().position(|axis| *axis == letter);
+    let letter = glued
         .iter()
-        .position(|letter| word == format!("normal{letter}") || word == format!("norm{letter}"));
+        .find_map(|(before, after)| axis(word.strip_prefix(before)?.strip_suffix(after)?));
+    let normal = word.strip_prefix("normal").or(word.strip_prefix("norm"));
+    let lettered = normal.and_then(axis);
     up.map(|rank| Role::Up { rank })
         .or(letter.map(place))
         .or(NORMAL.iter().position(&is).or(lettered).map(Role::Normal))
