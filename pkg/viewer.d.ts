@@ -238,6 +238,8 @@ export interface Viewer extends EventTarget {
   project(position: [number, number, number], normal?: [number, number, number]): { x: number; y: number; visible: boolean };
   /** Parallel projection instead of perspective. Default false. */
   parallel: boolean;
+  /** Points are drawn this many times as large as they are of themselves. Default 1. */
+  pointSize: number;
   readonly pose: Pose;
   /** Turns around what is shown, in radians. */
   turn(right: number, over: number): void;
@@ -303,6 +305,8 @@ export interface Subject {
   reduced?: ReducedCloud | null;
   /** For `'error'`, computed with `distances: true`. */
   mesh?: SurfaceMesh | null;
+  /** Another mesh of the same cloud, to be compared: the scale of `'error'` suits both. */
+  beside?: SurfaceMesh | null;
   /** Of the cloud, where it is known. */
   frame?: Frame;
 }

@@ -1,5 +1,5 @@
 /** Scans and meshes as things to draw, one draw call each. */
-import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points, SRGBColorSpace, Texture } from 'three';
+import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points, SRGBColorSpace, Sphere, Texture } from 'three';
 import { typicalSpacing } from './density.js';
 import { toFrame } from './frame.js';
 import { boxMaterial, edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
@@ -157,6 +157,8 @@ function geometryOf(source, frame) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(toFrame(source, frame), 3));
   if (source.normals) geometry.setAttribute('normal', new BufferAttribute(source.normals, 3));
+  // The frame's ball: three.js would pass over all points for a smaller one.
+  geometry.boundingSphere = new Sphere(undefined, 0.5);
   return geometry;
 }
 

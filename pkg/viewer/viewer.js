@@ -61,6 +61,7 @@ class CanvasViewer extends Moved {
   #insets = NO_INSETS;
   #seen = true;
   #awake = false;
+  #pointSize = 1;
   /** Who has moved since the last frame. @type {Mover | null} */
   #moved = null;
 
@@ -229,6 +230,15 @@ class CanvasViewer extends Moved {
     return Array.isArray(up) && up.filter((x) => Math.abs(x) > 1e-6 * Math.hypot(...up)).length > 1 ? up : this.upright;
   }
 
+  get pointSize() {
+    return this.#pointSize;
+  }
+
+  set pointSize(scale) {
+    this.#pointSize = scale;
+    this.#ask();
+  }
+
   /** @param {number} x @param {number} y */
   pick(x, y) {
     const { width, height, ratio } = this;
@@ -366,6 +376,7 @@ class CanvasViewer extends Moved {
       const { uniforms } = /** @type {import('three').ShaderMaterial} */ (material);
       uniforms.pixelsPerUnit.value = parallel ? perUnit * distance : perUnit;
       uniforms.distance.value = distance;
+      uniforms.scale.value = this.#pointSize;
       uniforms.smallest.value = 1.5 * this.ratio;
       if (uniforms.measured.value) dome = MEASURED_DOME;
     }

@@ -187,11 +187,26 @@ const WASM_OPT_FEATURES: [&str; 8] = [
 
 /// `cargo xtask build`: what is written from the table of options, the builds of pkg/wasm and the element in one file.
 pub fn build() -> Result<()> {
+    make(&Build::ALL)
+}
+
+/// The builds that are older than the sources: the quick way for tests.
+pub fn ensure() -> Result<()> {
+    let is_old = |build: &Build| !build.is_current();
+    let old: Vec<Build> = Build::ALL.into_iter().filter(is_old).collect();
+    if old.is_empty() {
+        options::write()?;
+        return one_file();
+    }
+    make(&old)
+}
+
+fn make(builds: &[Build]) -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;
     let begin = |build: Build| say(&format!("building wasm, {}", build.name()));
     let (threads, others): (Vec<Build>, Vec<Build>) =
-        (Build::ALL.into_iter()).partition(|&build| build == Build::Threads);
+        (builds.iter().copied()).partition(|&build| build == Build::Threads);
     // Two target folders, so two at once: the optimiser of a build takes one core.
     thread::scope(|scope| {
         let beside = scope.spawn(|| builder.make_all(&threads, begin));
@@ -199,15 +214,6 @@ pub fn build() -> Result<()> {
         beside.join().expect("no panic").and(made)
     })?;
     one_file()
-}
-
-/// All builds, unless none of them is older than the sources: the quick way for tests.
-pub fn ensure() -> Result<()> {
-    if Build::ALL.into_iter().all(Build::is_current) {
-        options::write()?;
-        return one_file();
-    }
-    build()
 }
 
 /// `pkg/element.min.js`, made of the package's modules in no time.
