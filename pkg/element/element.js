@@ -124,6 +124,7 @@ export class PointWeaveElement extends Posed {
         this.#describe();
         break;
       case 'controls':
+      case 'camera-controls':
         this.#describe();
         this.#dress();
         break;
