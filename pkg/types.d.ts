@@ -370,6 +370,12 @@ export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: numb
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
 
+/**
+ * Splits an origin of whole numbers off a cloud in double precision whose coordinates are far from zero for its size, as those of maps
+ * are: positions become differences from it, in place, and it goes into all that is made of the cloud. No bit is lost. Others stay as they are.
+ */
+export function splitOrigin<T extends { positions: Float32Array | Float64Array; origin?: [number, number, number] }>(cloud: T): T;
+
 /** How many points `target: 'auto'` keeps of so many, on this device. */
 export function autoCount(points: number): number;
 
