@@ -39,6 +39,8 @@ pub mod cloud;
 #[cfg(feature = "stages")]
 pub mod features;
 #[cfg(feature = "stages")]
+pub mod prepare;
+#[cfg(feature = "stages")]
 pub mod reduce;
 #[cfg(feature = "stages")]
 pub mod fit;
