@@ -7,6 +7,7 @@
 //! caller's arrays
 //!   └ cloud       checked, unit frame, Morton order                 section 3, sub-domains
 //!     └ features    spacing, normal, curvature, variation, noise      (given, in the paper)
+//!       ├ prepare     floors, pieces, strays, regions                   (before all else, where asked for)
 //!       └ reduce      fuzzy c-means centres stand for the points      section 3, eq. 1-8        ──► reduced cloud
 //!         └ fit         a local implicit function a sub-domain        section 4.1, eq. 9-11
 //!           └ orient      which side is out                           section 4.2, Algorithm 1
