@@ -6,4 +6,4 @@ export { PointweaveError } from './engine/errors.js';
 export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';
 export { sideInWords } from './engine/side.js';
-export const { createEngine, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);
+export const { createEngine, prepare, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);

@@ -6,7 +6,7 @@ import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
 /** @import { Rule, Table } from '../engine/rules.js' */
-/** @typedef {'reduce' | 'reconstruct' | 'inspect'} Command */
+/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'merge' | 'inspect'} Command */
 
 /**
  * @typedef {object} Flag
@@ -36,6 +36,7 @@ export const WORDS = {
 export function flagsOf(command) {
   const read = flags('read', TABLES.read);
   if (command === 'inspect') return read;
+  if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
   const reduce = [...flags('target', TARGETS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */

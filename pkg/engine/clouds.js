@@ -2,6 +2,7 @@
 import { own } from './arrays.js';
 import { UNITS } from './axes.js';
 import { badInput, expectArray } from './inputs.js';
+import { joinedCloud } from '../files/joining.js';
 
 /** @import { PointCloud } from '../types.js' */
 
@@ -13,6 +14,19 @@ import { badInput, expectArray } from './inputs.js';
  */
 export function cloudArgument(cloud, transfer) {
   return own(cloudFields(fields(cloud, 'cloud')), transfer);
+}
+
+/**
+ * One cloud, or several of one frame as one.
+ * @param {unknown} clouds
+ * @param {boolean} [transfer]
+ * @returns {PointCloud}
+ */
+export function cloudsArgument(clouds, transfer) {
+  if (!Array.isArray(clouds)) return cloudArgument(clouds, transfer);
+  if (clouds.length === 0) throw badInput('cloud', 'a cloud, or an array with one at least', clouds);
+  const each = clouds.map((cloud) => cloudFields(fields(cloud, 'cloud')));
+  return own(clouds.length === 1 ? each[0] : joinedCloud(each), transfer && clouds.length === 1);
 }
 
 /**

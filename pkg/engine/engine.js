@@ -4,12 +4,13 @@
  */
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
-import { cloudArgument, resultArgument } from './clouds.js';
+import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { checkRecipe, halves, lookedAt, ofAllPoints, preparedOf } from './preparing.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -91,14 +92,18 @@ export class Engine {
 
   /** @param {any} cloud @param {any} [options] */
   async reduce(cloud, options) {
-    const { own, transfer, ...watch } = this.#check('reduce', options);
-    return this.#run({ call: 'reduce', args: [cloudArgument(cloud, transfer), own] }, watch);
+    return this.#compute('reduce', cloud, options);
   }
 
   /** @param {any} cloud @param {any} [options] */
   async reconstruct(cloud, options) {
-    const { own, transfer, ...watch } = this.#check('reconstruct', options);
-    return this.#run({ call: 'reconstruct', args: [cloudArgument(cloud, transfer), own] }, watch);
+    return this.#compute('reconstruct', cloud, options);
+  }
+
+  /** @param {any} cloud one, or an array of them @param {any} steps @param {any} [options] */
+  async prepare(cloud, steps, options) {
+    const { transfer, ...watch } = this.#check('prepare', options);
+    return this.#prepared(cloudsArgument(cloud, transfer), checkRecipe(steps), watch);
   }
 
   /** @param {any} cloud @param {any} [options] */
@@ -195,6 +200,30 @@ export class Engine {
     const checked = checkOptions(call, options);
     checked.signal?.throwIfAborted();
     return checked;
+  }
+
+  /**
+   * A reduction or a reconstruction, after a recipe where there is one.
+   * @param {'reduce' | 'reconstruct'} call
+   * @param {any} cloud
+   * @param {unknown} options
+   */
+  async #compute(call, cloud, options) {
+    const { own: { prepare, ...own }, transfer, ...watch } = this.#check(call, options);
+    const given = cloudArgument(cloud, transfer);
+    if (!prepare) return this.#run({ call, args: [given, own] }, watch);
+    const [first, second] = halves(watch);
+    const prepared = await this.#prepared(given, prepare, first);
+    return ofAllPoints(await this.#run({ call, args: [prepared.cloud, own] }, second), prepared);
+  }
+
+  /**
+   * @param {import('../types.js').PointCloud} cloud of this engine
+   * @param {import('../types.js').Step[]} steps
+   * @param {Watch} watch
+   */
+  async #prepared(cloud, steps, watch) {
+    return preparedOf(cloud, await this.#runIn('prepare', { call: 'prepare', args: [lookedAt(cloud), steps] }, watch));
   }
 
   /**

@@ -191,18 +191,11 @@ impl Scan<'_> {
                 (isolated, StepReport::default())
             }
             Step::Flying => {
-                let flying = strays::flying(tree, &eye, &mut part)?;
-                let reason = match eye(0) {
-                    Some(_) => "",
-                    None => {
-                        "nobody knows where the points were seen from: no line of sight is known"
-                    }
-                };
-                let report = StepReport {
-                    reason: reason.into(),
-                    ..StepReport::default()
-                };
-                (flying, report)
+                let halo = strays::halo(tree, features, &mut Part::new(&mut part, 0.0..0.6))?;
+                let mut late = Part::new(&mut part, 0.6..1.0);
+                let between = strays::between(tree, &eye, &mut late)?;
+                let either = halo.into_iter().zip(between).map(|(a, b)| a || b);
+                (either.collect(), StepReport::default())
             }
             Step::Plane {
                 drop,

@@ -29,7 +29,7 @@ pub const MIN_SHARE: f64 = 0.05;
 /// Within so many standard deviations of the plane's points one that lies along it belongs to it.
 const SPREAD: f64 = 4.0;
 /// Within so many of the noise, or this share of the spacing, any point may.
-const WITHIN: (f64, f64) = (2.5, 0.25);
+const WITHIN: (f64, f64) = (2.5, 0.1);
 /// Neighbours that are asked whether they belong, and how many have to.
 const BESIDE: (usize, usize) = (13, 4);
 /// Least share of what stands on a plane that is in front of it, where it carries.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! { step: 'outliers' }                                             isolated points
-//! { step: 'flying' }                                               points between two surfaces on a line of sight
+//! { step: 'flying' }                                               points beside a surface, or between two on a line of sight
 //! { step: 'plane', drop: 'floor', behind, minShare, seed }         'floor', 'all', 'none', or numbers of planes
 //! { step: 'pieces', keep: 'largest', gap }                         'largest', 'all', a count, { minShare }, or numbers of pieces
 //! { step: 'box', min, max, turn, keep }                            turn: a quaternion x y z w about the middle

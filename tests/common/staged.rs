@@ -21,7 +21,7 @@ pub enum Body {
 /// What stands around the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// On a round table of 0.8 diagonals across more than itself.
+    /// On a round table that goes on for a quarter of the diagonal around it.
     Table,
     /// On a floor, with two walls behind it.
     Room,
@@ -32,7 +32,7 @@ pub enum Stage {
 pub struct Staged {
     pub model: Model,
     pub stage: Stage,
-    /// Another model beside it, a tenth of the diagonal away.
+    /// Another model of half the size beside it, a tenth of the diagonal away.
     pub second: Option<Model>,
     /// Flying pixels and stray returns.
     pub strays: bool,
@@ -70,9 +70,13 @@ const LOOSE: f64 = 0.004;
 /// Cosine of the flattest incidence that returns.
 const LEAST_COSINE: f64 = 0.12;
 
+/// Size of the second object.
+const SECOND: f64 = 0.5;
+
 /// Something that rays hit.
 enum Solid {
-    Model(Model, DVec3),
+    /// At a place, so many times as large.
+    Model(Model, DVec3, f64),
     /// Up to this distance from the axis through the origin.
     Ground(f64, f64),
     /// x or z is at most this far: a wall at minus that, up to a height and along to a width.
@@ -85,24 +89,24 @@ impl Staged {
         let (low, high) = self.model.bounds();
         let diagonal = low.distance(high);
         let ground = foot(self.model);
-        let mut solids = vec![(Body::Object, Solid::Model(self.model, DVec3::ZERO))];
+        let mut solids = vec![(Body::Object, Solid::Model(self.model, DVec3::ZERO, 1.0))];
         let half = 0.5 * dvec3(high.x - low.x, 0.0, high.z - low.z).length();
         match self.stage {
             Stage::Table => {
-                solids.push((Body::Support, Solid::Ground(ground, half + 0.4 * diagonal)))
+                solids.push((Body::Support, Solid::Ground(ground, half + 0.25 * diagonal)))
             }
             Stage::Room => {
-                solids.push((Body::Support, Solid::Ground(ground, 1.6 * diagonal)));
+                solids.push((Body::Support, Solid::Ground(ground, 1.1 * diagonal)));
                 for axis in [0, 2] {
-                    solids.push((Body::Support, Solid::Wall(axis, 1.1 * diagonal, ground)));
+                    solids.push((Body::Support, Solid::Wall(axis, 0.75 * diagonal, ground)));
                 }
             }
         }
         if let Some(second) = self.second {
             let (other, _) = second.bounds();
-            let aside = high.x + 0.1 * diagonal - other.x;
-            let at = dvec3(aside, ground - foot(second), 0.0);
-            solids.push((Body::Second, Solid::Model(second, at)));
+            let aside = high.x + 0.1 * diagonal - SECOND * other.x;
+            let at = dvec3(aside, ground - SECOND * foot(second), 0.0);
+            solids.push((Body::Second, Solid::Model(second, at, SECOND)));
         }
         let mut pitch = 0.05;
         let mut scan = self.raster(&solids, (diagonal, ground), pitch);
@@ -138,7 +142,7 @@ impl Staged {
                 let (up, out) = (elevation.to_radians().sin(), elevation.to_radians().cos());
                 let outward = dvec3(out * turn.cos(), up, out * turn.sin());
                 let eye = center + outward * reach * diagonal;
-                let behind_walls = self.stage == Stage::Room && eye.x.min(eye.z) < -1.0 * diagonal;
+                let behind_walls = self.stage == Stage::Room && eye.x.min(eye.z) < -0.7 * diagonal;
                 if behind_walls {
                     continue;
                 }
@@ -146,7 +150,7 @@ impl Staged {
                 let above = right.cross(-outward);
                 let view = scan.eyes.len() as u32;
                 scan.eyes.push(eye);
-                let half = (1.4 / reach / pitch) as i32;
+                let half = (1.2 / reach / pitch) as i32;
                 for row in -half..half {
                     let mut before: Option<f64> = None;
                     for column in -half..half {
@@ -224,7 +228,10 @@ fn cast(solids: &[(Body, Solid)], eye: DVec3, ray: DVec3) -> Option<(f64, Body, 
 impl Solid {
     fn cast(&self, eye: DVec3, ray: DVec3) -> Option<(f64, DVec3)> {
         match *self {
-            Solid::Model(model, at) => trace(model, eye - at, ray),
+            Solid::Model(model, at, size) => {
+                let (range, normal) = trace(model, (eye - at) / size, ray)?;
+                Some((size * range, normal))
+            }
             Solid::Ground(height, radius) => {
                 let range = (height - eye.y) / ray.y;
                 let p = eye + ray * range;

@@ -27,7 +27,7 @@ Pointweave's own commands. Each sets up what is missing first.
 
 Usage: cargo xtask <command> [options]
 
-  build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
+  build [NAME…]         what the table of options says, into pkg/ and www/, and all wasm builds, or these, into pkg/wasm/
   options               what the table of options says, and nothing else
   page                  the builds and the page, into www/dist/, for any static server
   serve [--port N]      the same, served on localhost (default port 8080) as soon as there is something to see
@@ -60,7 +60,7 @@ fn run(args: &[String]) -> Result<()> {
         None => ("help", args),
     };
     match command {
-        "build" => expect_no_options(arguments).and_then(|()| build::build()),
+        "build" => build::build_these(arguments),
         "options" => expect_no_options(arguments).and_then(|()| options::write()),
         "page" => expect_no_options(arguments)
             .and_then(|()| build::ensure())
