@@ -66,6 +66,11 @@ impl<'a> Eyes<'a> {
         }
     }
 
+    /// Whether the cloud says where from; a depth camera's place is a guess.
+    pub(crate) fn are_told(&self) -> bool {
+        self.viewpoints.is_some()
+    }
+
     /// Where the cloud's point `i` was seen from.
     pub(crate) fn seeing(&self, i: usize) -> Option<Vec3> {
         match self.viewpoints {

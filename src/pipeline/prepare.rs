@@ -193,7 +193,8 @@ impl Scan<'_> {
             Step::Flying => {
                 let halo = strays::halo(tree, features, &mut Part::new(&mut part, 0.0..0.6))?;
                 let mut late = Part::new(&mut part, 0.6..1.0);
-                let between = strays::between(tree, &eye, &mut late)?;
+                let told = |i: usize| eye(i).filter(|_| eyes.are_told());
+                let between = strays::between(tree, &told, &mut late)?;
                 let either = halo.into_iter().zip(between).map(|(a, b)| a || b);
                 (either.collect(), StepReport::default())
             }
@@ -203,8 +204,11 @@ impl Scan<'_> {
                 min_share,
                 seed,
             } => {
-                let up = cloud.up;
-                let known = Known { up, eye: &eye };
+                let known = Known {
+                    up: cloud.up,
+                    eye: &eye,
+                    told: eyes.are_told(),
+                };
                 let planes = Planes::find(tree, features, &known, (*min_share, *seed), &mut part)?;
                 let chosen = planes.chosen(drop);
                 let mask = planes.dropped(tree, &chosen, *behind);

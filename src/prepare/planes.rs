@@ -4,8 +4,8 @@
 //! 2. A plane's front is the side that it was seen from, or without viewpoints the side of most of what stands on it. `sheet` says
 //!    what stands on it: what has the plane beneath it. A plane *carries* when at most a tenth of that is behind it, when its rim
 //!    is not where other surfaces begin, as a face's of a block is, and when half of the scan, or something that touches it,
-//!    stands on it.
-//! 3. The *floor* is the plane that carries and lies across `up`, where that is known; else the one that most things touch.
+//!    stands on it; or when it is a large part of the scan and most of its rim is free.
+//! 3. The *floor* is the plane that carries and lies across `up`, where one does; of several the one that most things touch.
 //! 4. A point belongs to a plane when it lies within its points' spread and along it, or, where its normal says otherwise, within
 //!    the noise and beside points that belong: where an object meets the plane, normals are those of neither.
 //!
@@ -38,6 +38,9 @@ const IN_FRONT: f64 = 0.9;
 const FREE: f64 = 0.2;
 /// Least share of the rest of the scan that stands on it, or that touches it, where it carries.
 const STANDS: (f64, f64) = (0.5, 0.002);
+/// Or: at least so much of its rim is free, and it holds at least this share of the scan's area. What stands on a table that is
+/// seen from one side hides a part of it, so that nothing is beneath it.
+const OPEN: (f64, f64) = (0.6, 0.2);
 /// What is nearer than so many cells of the sheet touches the plane.
 const TOUCHES: f64 = 2.0;
 /// Cosine of the largest angle between a floor's normal and up: 37°.
@@ -98,6 +101,8 @@ pub struct Known<'a> {
     pub up: Option<Vec3>,
     /// Where a point was seen from, in the octree's order.
     pub eye: &'a (dyn Fn(usize) -> Option<Vec3> + Sync),
+    /// Whether that is told, and no guess.
+    pub told: bool,
 }
 
 impl Planes {
@@ -121,7 +126,7 @@ impl Planes {
         let seen = |found: &Found| seen_from_front(tree, &voters, found, known.eye);
         let mut all: Vec<Plane> = found
             .iter()
-            .map(|plane| judged(&voters, plane, seen(plane)))
+            .map(|plane| judged(&voters, plane, seen(plane), known.told))
             .collect();
         progress.update(Stage::Prepare, 0.5)?;
         let mut of = assigned(tree, features, &all);
@@ -195,7 +200,7 @@ fn seen_from_front(
 }
 
 /// What a plane is to the rest of the scan.
-fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Plane {
+fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>, told: bool) -> Plane {
     let own = |(voter, own): (&Voter, &bool)| own.then_some(voter.at);
     let points: Vec<Vec3> = voters.iter().zip(&found.own).filter_map(own).collect();
     let sheet = Sheet::of(&points, found.normal);
@@ -226,7 +231,9 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Pla
         / all;
     let free_rim = sheet.free_rim(rest().filter(near).map(|(p, _)| p));
     let stands = stands / all;
-    let open = free_rim >= FREE || seen_from_front.is_some();
+    let open = free_rim >= FREE || told && seen_from_front.is_some();
+    let bears = stands >= STANDS.0 || touching >= STANDS.1;
+    let lies_open = free_rim >= OPEN.0 && found.share >= OPEN.1;
     Plane {
         point: found.point,
         normal: front * found.normal,
@@ -234,7 +241,7 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Pla
         points: 0,
         share: found.share,
         area: sheet.area(),
-        carries: open && in_front >= IN_FRONT && (stands >= STANDS.0 || touching >= STANDS.1),
+        carries: in_front >= IN_FRONT && (open && bears || lies_open),
         in_front,
         free_rim,
         touching,
@@ -243,8 +250,11 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Pla
 
 /// Which of these planes is the floor.
 fn floor(all: &[Plane], up: Option<DVec3>) -> Option<usize> {
-    let level = |plane: &Plane| up.is_none_or(|up| plane.normal.dot(up) >= UPRIGHT);
-    let carrying = (0..all.len()).filter(|&i| all[i].carries && level(&all[i]));
+    let level = |i: &usize| up.is_none_or(|up| all[*i].normal.dot(up).abs() >= UPRIGHT);
+    let carrying = || (0..all.len()).filter(|&i| all[i].carries);
+    // A camera's up is not always the world's: where nothing lies across it, it says nothing.
+    let is_any_level = carrying().any(|i| level(&i));
+    let carrying = carrying().filter(|i| level(i) || !is_any_level);
     // Of equal ones the first, which is the largest.
     carrying.reduce(|best, next| {
         if all[next].touching > all[best].touching {
