@@ -2,7 +2,8 @@
 //!
 //! Objects on a table and in a room, cut out by one recipe: what is kept of the object, what is dropped of the rest, and the overlap
 //! (points kept that are the object's, of those that are either). With `peer`, Open3D's `segment_plane` and `cluster_dbscan` do the
-//! same scans in the same run. With files, says what the recipe does to each and writes what is left beside it, as FILE.object.ply.
+//! same scans in the same run. With files, says what the recipe does to each, and writes what is left to NAME.object.ply among the
+//! temporary files.
 
 mod peer;
 #[path = "../../common/staged.rs"]
