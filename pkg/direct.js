@@ -2,6 +2,7 @@
 import { makeLoad } from './engine/direct-api.js';
 import { platform } from './engine/platform.web.js';
 
+export { autoCount } from './engine/amount.js';
 export { PointweaveError } from './engine/errors.js';
 export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';

@@ -52,6 +52,21 @@ export interface PointWeaveEventMap {
   error: CustomEvent<ErrorDetail>;
   /** The job under way was stopped; nothing of it will be shown. */
   abort: CustomEvent<AbortDetail>;
+  /** The camera has moved; once a frame. */
+  'camera-change': CustomEvent<CameraChangeDetail>;
+}
+
+/** In the coordinates and the unit of the file, which glTF says are metres. As text, `0.1m 0.2m 0.3m`. */
+export interface Vector {
+  x: number;
+  y: number;
+  z: number;
+  toString(): string;
+}
+
+export interface CameraChangeDetail {
+  /** A person, or the program and what turns by itself. */
+  source: 'user-interaction' | 'none';
 }
 
 /** Every sentence that people see or hear. */
@@ -68,6 +83,8 @@ export interface Words {
   fullscreen: string;
   cancel: string;
   retry: string;
+  /** What opens the message of an error under its title. */
+  details: string;
   stopped: string;
   stages: Record<Stage, string>;
   /** Titles, by the error's code; `other` for those that are not there. */
@@ -91,7 +108,7 @@ export class PointWeaveElement extends HTMLElement {
   src: string;
   /** What it shows, in words. `alt=""` says that it is decoration, where there are no `controls`. */
   alt: string;
-  /** Share of the points to keep, (0, 1]. Default `null`: the package's, 1/3. */
+  /** Share of the points to keep, (0, 1]. Default `null`: as many as suit the scan and the device, as `target: 'auto'`. */
   ratio: number | null;
   /** Points to keep, at least 1; goes before `ratio`. Default `null`. */
   count: number | null;
@@ -114,6 +131,53 @@ export class PointWeaveElement extends HTMLElement {
   orientation: Orientation;
   /** Turns a scan's mesh to its other side. */
   flip: boolean;
+
+  /**
+   * The following are those of `<model-viewer>`, in its syntax; `''` where they are not given. Where the first look is from: the angle
+   * around, the angle from the top, and the distance, such as `30deg 75deg 110%`; at 100 % it reaches to the edges. Each can be `auto`.
+   */
+  cameraOrbit: string;
+  /** What is looked at, such as `0m 0.1m 0m` or `auto auto auto`, in the coordinates of the file. */
+  cameraTarget: string;
+  /** Vertical, such as `30deg` or `auto`, which is 32. */
+  fieldOfView: string;
+  /** How far one may turn, come near and go, as `cameraOrbit`. */
+  minCameraOrbit: string;
+  maxCameraOrbit: string;
+  minFieldOfView: string;
+  maxFieldOfView: string;
+  disableZoom: boolean;
+  disablePan: boolean;
+  /** Milliseconds that `autoRotate` rests after a hand was on it. Default 3000. */
+  autoRotateDelay: number;
+  /** The address of an equirectangular picture, `.hdr` or one that the browser reads, or `neutral` (default), a studio. */
+  environmentImage: string;
+  /** Of a GLB's materials. Default 1. */
+  exposure: number;
+  /** Of the shadow on the ground under a mesh, 0 (default) to 1. */
+  shadowIntensity: number;
+  /** `'auto'` (default) takes the poster away when the view is there, `'manual'` when `dismissPoster` says so. */
+  reveal: 'auto' | 'manual';
+  /** `'auto'` (default) shows how to move it after three seconds, where it has `controls` and nobody has. */
+  interactionPrompt: 'auto' | 'none';
+
+  /** Resolves with what `load` tells as soon as the view that is asked for is shown; rejects with what `error` tells. */
+  whenLoaded(): Promise<LoadDetail>;
+  /** Sends the poster away, and begins to load. */
+  dismissPoster(): void;
+  /** Puts the poster back. */
+  showPoster(): void;
+  /** Angles in radians. */
+  getCameraOrbit(): { theta: number; phi: number; radius: number; toString(): string };
+  getCameraTarget(): Vector;
+  /** Degrees. */
+  getFieldOfView(): number;
+  /** Edge lengths of the box of what is shown; 0 for nothing. */
+  getDimensions(): Vector;
+  /** The mesh at a place of the viewport, as `clientX` and `clientY` say it: where it is, and the normal of the plane around that. */
+  positionAndNormalFromPoint(x: number, y: number): { position: Vector; normal: Vector } | null;
+  /** As `toBlob`, as an address. */
+  toDataURL(type?: string, quality?: number): string;
 
   /** Whether the view that is asked for is shown. */
   readonly loaded: boolean;

@@ -2,6 +2,7 @@
 import { makeApi } from './engine/api.js';
 import { platform } from './engine/platform.node.js';
 
+export { autoCount } from './engine/amount.js';
 export { PointweaveError } from './engine/errors.js';
 export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';

@@ -8,7 +8,7 @@ import type {
   Prepared, SampleOptions, Step, SurfaceMesh, WriteOptions, Model,
 } from './types.js';
 
-export { DEFAULTS, PointweaveError, flip, sideInWords } from './types.js';
+export { DEFAULTS, PointweaveError, autoCount, flip, sideInWords } from './types.js';
 
 export type CoreOptions = Pick<EngineOptions, 'wasmUrl'>;
 

@@ -238,7 +238,7 @@ export type Beside =
 export type OutputFormat =
   /** Everything, in world coordinates: `double` where they need it. */
   | 'ply'
-  /** Rows of text: everything but triangles, in world coordinates. */
+  /** Rows of text: everything but triangles, in world coordinates. With attributes, a comment at the top names the columns. */
   | 'xyz'
   /**
    * Binary glTF 2.0: everything. Positions are in single precision, and the origin is the node's translation in double
@@ -319,7 +319,7 @@ export interface EngineOptions {
   worker?: boolean;
   /**
    * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/`, `prepare/` and `samples/`, or
-   * the URLs of the wasm files. All but the first two are loaded when a file of theirs is read or written, a recipe done, or a sample made. Default: beside the package.
+   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, a recipe done, or a sample made. Default: beside the package.
    */
   wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; prepare?: string | URL; samples?: string | URL };
   /**
@@ -382,11 +382,14 @@ export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: numb
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
 
+/** How many points `target: 'auto'` keeps of so many, on this device. */
+export function autoCount(points: number): number;
+
 /** What is taken for each option that is not given; `undefined` where that follows from other options. */
 export const DEFAULTS: { readonly reduce: Readonly<ReduceOptions>; readonly reconstruct: Readonly<ReconstructOptions> };
 
 export type ErrorCode =
-  | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'bad-option' | 'degenerate'
+  | 'empty-cloud' | 'too-few-points' | 'bad-length' | 'non-finite' | 'bad-input' | 'detached' | 'bad-option' | 'degenerate'
   | 'unknown-format' | 'bad-file' | 'unsupported-file' | 'load-failed' | 'out-of-memory' | 'disposed' | 'internal'
   | 'bad-index' | 'needs-triangles' | 'missing-package' | 'no-webgl';
 

@@ -65,6 +65,8 @@ export interface LayerColors {
   reduced: string;
   edges: string;
   boxes: string;
+  /** Of a GLB's materials that are plain white: default white. */
+  plain?: string;
 }
 
 /** Room at the edges of the canvas for what lies over the picture, in CSS pixels. At most 40 % of a side's length is given. */
@@ -83,6 +85,40 @@ export interface Pose {
   elevation: number;
   /** 1 shows the whole, 2 is twice as near. */
   zoom: number;
+}
+
+/** In the unit of the data, or a share of the distance from which everything is seen. */
+export type Distance = number | { share: number };
+
+/** Where the first look is from, in degrees. What is not given is as usual: from the front, a little from the right and above. */
+export interface FirstLook {
+  /** Around the upright axis: 0 is the front, 90 the right. */
+  azimuth?: number;
+  /** Down from the upright axis: 90 is level. */
+  polar?: number;
+  /** From the target. */
+  distance?: Distance;
+  /** What is looked at, in the coordinates of the data; null is the middle along that axis. */
+  target?: [number | null, number | null, number | null];
+  /** Vertical. Default 32. */
+  fieldOfView?: number;
+}
+
+/** The least and the most, each where it is given. Degrees. */
+export interface Limits {
+  azimuth?: [number | null, number | null];
+  polar?: [number | null, number | null];
+  distance?: [Distance | null, Distance | null];
+  fieldOfView?: [number | null, number | null];
+}
+
+/** Where the camera stands now: degrees, and the unit and coordinates of the data. */
+export interface Stance {
+  azimuth: number;
+  polar: number;
+  distance: number;
+  target: [number, number, number];
+  fieldOfView: number;
 }
 
 export interface ViewerOptions {
@@ -132,6 +168,8 @@ export interface Paint {
 }
 
 export interface ViewerEventMap {
+  /** The picture was drawn. */
+  draw: Event;
   /** The camera has moved; once a frame. */
   move: CustomEvent<{ by: Mover }>;
   /** The browser has taken WebGL away. The picture stays. */
@@ -174,9 +212,34 @@ export interface Viewer extends EventTarget {
   /** What is up now, also where `up` is `'auto'`; of a direction the nearest axis. */
   readonly upright: Axis;
   interactive: boolean;
+  /** Whether pointer and wheel come nearer, and move aside, where it is interactive. Default true. */
+  zoomable: boolean;
+  pannable: boolean;
   autoRotate: boolean;
+  /** Milliseconds that it rests after a hand was on it. Default 3000. */
+  autoRotateDelay: number;
+  /** Where `home` goes; assigning goes there. */
+  firstLook: FirstLook;
+  /** How far one may go. */
+  limits: Limits;
+  readonly stance: Stance;
+  /** What lights the materials of a GLB: a neutral studio (default), or a `Texture` of three.js, equirectangular. */
+  surroundings: object | 'neutral';
+  /** Of these materials, 1 as it is. */
+  exposure: number;
+  /** Of the shadow on the ground under meshes, 0 (default) to 1. */
+  shadow: number;
+  /** Edge lengths of the box of what is shown; null for nothing. */
+  readonly dimensions: [number, number, number] | null;
+  /**
+   * Where a position of the data is on the canvas, in CSS pixels from its top left, and whether it can be seen: before the camera, and its
+   * normal, where there is one, towards it. What stands before it is not looked for.
+   */
+  project(position: [number, number, number], normal?: [number, number, number]): { x: number; y: number; visible: boolean };
   /** Parallel projection instead of perspective. Default false. */
   parallel: boolean;
+  /** Points are drawn this many times as large as they are of themselves. Default 1. */
+  pointSize: number;
   readonly pose: Pose;
   /** Turns around what is shown, in radians. */
   turn(right: number, over: number): void;
@@ -189,10 +252,10 @@ export interface Viewer extends EventTarget {
   /** Straight at a side, in parallel projection. */
   lookFrom(side: Side): void;
   /**
-   * The mesh that is seen at a place of the canvas, in CSS pixels from its top left, which of its triangles, and the unit normal of
+   * The mesh that is seen at a place of the canvas, in CSS pixels from its top left, which of its triangles, where, and the unit normal of
    * the plane around that, towards the viewer, in the coordinates of the data; null for none. Costs a pass over the triangles.
    */
-  pick(x: number, y: number): { layer: string; triangle: number; normal: [number, number, number] } | null;
+  pick(x: number, y: number): { layer: string; triangle: number; position: [number, number, number]; normal: [number, number, number] } | null;
   /** Draws at once; else it is drawn before the next frame. */
   draw(): void;
   /** The picture as it is shown, without background. Types and quality as `canvas.toBlob`. */
@@ -242,6 +305,8 @@ export interface Subject {
   reduced?: ReducedCloud | null;
   /** For `'error'`, computed with `distances: true`. */
   mesh?: SurfaceMesh | null;
+  /** Another mesh of the same cloud, to be compared: the scale of `'error'` suits both. */
+  beside?: SurfaceMesh | null;
   /** Of the cloud, where it is known. */
   frame?: Frame;
 }

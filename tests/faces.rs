@@ -224,6 +224,91 @@ fn four() -> Vec<u8> {
     )
 }
 
+/// A square whose corners have the corners of the picture of [`four`], with this material library.
+fn square(library: &str, name: &str) -> RawCloud {
+    let file = format!(
+        "mtllib {name}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n"
+    );
+    read_beside(
+        file.as_bytes(),
+        Format::Obj,
+        &ReadOptions::default(),
+        &mut |name| match name {
+            "my scan.mtl" | "b.mtl" => Some(library.into()),
+            "my tex.png" => Some(four()),
+            _ => None,
+        },
+    )
+    .expect("an OBJ file")
+}
+
+#[test]
+fn maps_of_an_obj_are_moved_scaled_and_quoted() {
+    let plain = square("newmtl a\nmap_Kd my tex.png\n", "my scan.mtl");
+    let corners = [(0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)];
+    let [low, right, upper, far] = corners.map(|(x, y)| color_at(&plain, x, y));
+    assert_ne!(low, far);
+    for (library, name) in [
+        ("newmtl a\nmap_Kd \"my tex.png\"\n", "my scan.mtl"),
+        ("newmtl a\nmap_Kd my tex.png\n", "a.mtl b.mtl"),
+        ("newmtl a\nmap_Kd my tex.png\n", "\"my scan.mtl\""),
+    ] {
+        let cloud = square(library, name);
+        assert_eq!(
+            corners.map(|(x, y)| color_at(&cloud, x, y)),
+            [low, right, upper, far]
+        );
+    }
+    // The middles of the pixels lie in the square's corners; and one of them everywhere.
+    let inner = square(
+        "newmtl a\nmap_Kd -s 0.5 0.5 -o 0.25 0.25 my tex.png\n",
+        "b.mtl",
+    );
+    let pixels = [[0, 0, 255], [255, 255, 255], [255, 0, 0], [0, 255, 0]];
+    for ((x, y), pixel) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
+        .into_iter()
+        .zip(pixels)
+    {
+        let found = color_at(&inner, x, y);
+        assert!(
+            found
+                .iter()
+                .zip(pixel)
+                .all(|(&a, b): (&u8, u8)| a.abs_diff(b) < 12),
+            "{found:?}"
+        );
+    }
+    let one = square(
+        "newmtl a\nmap_Kd -s 0 0 1 -o 0.75 0.25 0 my tex.png\n",
+        "b.mtl",
+    );
+    assert!(colors(&one).iter().all(|color| *color == [255; 3]));
+}
+
+#[test]
+fn a_ply_has_the_colours_of_its_texture() {
+    let plain = square("newmtl a\nmap_Kd my tex.png\n", "my scan.mtl");
+    for names in [["s", "t"], ["texture_u", "texture_v"]] {
+        let file = format!(
+            "ply\nformat ascii 1.0\ncomment TextureFile my tex.png\nelement vertex 4\nproperty float x\nproperty float y\n\
+             property float z\nproperty float {}\nproperty float {}\nelement face 1\nproperty list uchar int vertex_indices\n\
+             end_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n",
+            names[0], names[1]
+        );
+        let cloud = read_beside(
+            file.as_bytes(),
+            Format::Ply,
+            &ReadOptions::default(),
+            &mut |name| (name == "my tex.png").then(four),
+        )
+        .expect("a PLY file");
+        assert!(cloud.attributes.is_empty());
+        for (x, y) in [(0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)] {
+            assert_eq!(color_at(&cloud, x, y), color_at(&plain, x, y));
+        }
+    }
+}
+
 #[test]
 fn an_obj_has_the_colours_of_its_materials() {
     let obj = "mtllib my scan.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\nv 4 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
@@ -334,6 +419,16 @@ fn factors_multiply_linear_light_and_transforms_move_the_texture() {
     assert_eq!(
         color_at(&textured(plain, "{}", ""), 0.5, 0.5),
         [255, 0, 128]
+    );
+}
+
+#[test]
+fn a_black_body_that_shines_has_the_colours_of_its_light() {
+    let shining = r#"{"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},"pbrMetallicRoughness":{"baseColorFactor":[0,0,0,1]}}"#;
+    let plain = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
+    assert_eq!(
+        colors(&textured(shining, "{}", "")),
+        colors(&textured(plain, "{}", ""))
     );
 }
 

@@ -220,6 +220,26 @@ fn colours_of_a_pcd_file_of_every_type() {
 }
 
 #[test]
+fn colours_of_a_ply_file_in_one_value() {
+    for (kind, value) in [
+        ("uint", "16744448".to_string()),
+        ("int", (0xff80_0000u32 as i32 | 0x8000).to_string()),
+        ("float", f32::from_bits(0x00ff_8000).to_string()),
+        ("float", "16744448".to_string()),
+    ] {
+        let file = format!(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty {kind} rgb\nproperty float y\n\
+             property float z\nproperty float w\nend_header\n1 {value} 2 3 4\n"
+        );
+        let cloud = both(file.as_bytes(), Format::Ply);
+        assert_eq!(values(&cloud), [1.0, 2.0, 3.0]);
+        let red = if kind == "int" { 128 } else { 255 };
+        assert_eq!(cloud.colors, Some(vec![red, 128, 0]), "{kind} {value}");
+        assert_eq!(cloud.attributes.len(), 1);
+    }
+}
+
+#[test]
 fn a_las_header_that_was_never_finished() {
     for (format, version, count) in [(3, (1, 2), 107), (1, (1, 2), 107), (7, (1, 4), 247)] {
         let file = made::las(format, 25, version, false);
@@ -401,6 +421,8 @@ fn messages_say_what_is_there() {
             "a VTK file in XML",
         ),
         (b"Kaydara FBX Binary  \x00", "an FBX scene"),
+        (b"DSRB\0\0\0\0", "a Surfer grid in binary"),
+        (b"{\"asset\":{\"version\":\"2.0\"}}", "a glTF scene as text"),
         (b"\x00\x01\x02\xfe\xff", "the bytes 00 01 02 fe ff"),
     ] {
         let error = detect(bytes, None).expect_err("no scan");

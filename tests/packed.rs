@@ -87,6 +87,20 @@ fn scans_of_a_ptx_file_are_at_their_poses() {
 const GRID: &str = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 -9999 6\n";
 
 #[test]
+fn a_scan_of_a_ptx_file_without_colours_is_white() {
+    let head = "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n";
+    let file =
+        format!("{head}1 2 3 0.5 255 128 0\n2 2 3 0.5 255 128 0\n{head}1 2 4 0.25\n2 2 4 0.25\n");
+    let cloud = both(file.as_bytes(), Format::Ptx);
+    let colors = [[255, 128, 0]; 2].into_iter().chain([[255; 3]; 2]);
+    assert_eq!(cloud.colors, Some(colors.flatten().collect()));
+    assert_eq!(cloud.attributes[0].values, [0.5, 0.5, 0.25, 0.25]);
+    // Points alone have no intensity.
+    let bare = format!("{head}1 2 3\n2 2 3\n");
+    assert!(both(bare.as_bytes(), Format::Ptx).attributes.is_empty());
+}
+
+#[test]
 fn heights_of_an_ascii_grid_are_in_the_middles_of_their_cells() {
     assert_eq!(detect(GRID.as_bytes(), Some("dem.asc")), Ok(Format::Grid));
     let cloud = both(GRID.as_bytes(), Format::Grid);
@@ -109,7 +123,30 @@ fn heights_of_an_ascii_grid_are_in_the_middles_of_their_cells() {
         values(&both(sides.as_bytes(), Format::Grid))[..3],
         [105.0, 207.5, 1.0]
     );
+    // Other orders, colons, decimal commas, GRASS's edges, Surfer's ranges from the south on.
+    let rows = "1 2 3\n4 -9999 6\n";
+    for other in [
+        format!("nrows 2\nncols 3\nxllcorner 100\nyllcorner 200\ncellsize 10\n{rows}"),
+        format!("ncols: 3\nnrows: 2\nxllcorner: 100\nyllcorner: 200\ncellsize: 10\n{rows}"),
+        format!(
+            "ncols 3\nnrows 2\nxllcorner 100,0\nyllcorner 200,0\ncellsize 10,0\n{}",
+            "1,0 2,0 3,0\n4,0 -9999,0 6,0\n"
+        ),
+        format!(
+            "north: 220\nsouth: 200\neast: 130\nwest: 100\nrows: 2\ncols: 3\n{}",
+            rows.replace("-9999", "*")
+        ),
+        "DSAA\n3 2\n105 125\n205 215\n1 6\n4 1.70141e+38 6\n1 2 3\n".into(),
+    ] {
+        assert_eq!(detect(other.as_bytes(), None), Ok(Format::Grid), "{other}");
+        let cloud = both(other.as_bytes(), Format::Grid);
+        let mut points: Vec<[f64; 3]> = values(&cloud).as_chunks().0.to_vec();
+        points.sort_by(|a, b| a[2].total_cmp(&b[2]));
+        assert_eq!(points.as_flattened(), expected, "{other}");
+        assert_eq!(cloud.skipped, [("no-data", 1)], "{other}");
+    }
     for bad in [
+        "DSAA\n3 2\n105 125\n205 x\n".into(),
         GRID.replace(" 6\n", "\n"),
         GRID.replace("cellsize", "size"),
         GRID.replace("nrows 2", "nrows -2"),
@@ -429,4 +466,21 @@ fn centres_of_packed_splats() {
     assert_eq!(code(&spz(9, &places, 2).1, Format::Spz), "unsupported-file");
     assert_eq!(code(&spz(2, &places, 200).1, Format::Spz), "bad-file");
     assert_eq!(code(b"\x1f\x8b", Format::Spz), "bad-file");
+}
+
+#[test]
+fn archives_are_looked_through_for_every_extension() {
+    let script = std::fs::read_to_string("pkg/files/archive.js").expect("the script");
+    let list = |name: &str| -> Vec<String> {
+        let start = format!("const {name} = /\\.(");
+        let (_, rest) = script.split_once(&start).expect("a list");
+        let (list, _) = rest.split_once(")$/i;").expect("its end");
+        list.split('|').map(String::from).collect()
+    };
+    let mut found = [list("SCAN"), list("TEXT")].concat();
+    let all = Format::ALL.iter().flat_map(|format| format.extensions());
+    let mut expected: Vec<String> = all.map(|extension| extension.to_string()).collect();
+    found.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(found, expected);
 }

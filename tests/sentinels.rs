@@ -35,6 +35,13 @@ fn heights_without_data_are_left_out() {
         "-1.7976931348623157e308",
         "1e30",
         "9999",
+        "-9999.9",
+        "-999.25",
+        "-6999",
+        "-88888",
+        "99999.99",
+        "-2147483648",
+        "-1e10",
     ] {
         for every in [4, 100] {
             let text = raster(missing, every);
@@ -111,6 +118,21 @@ fn many_points_at_zero_are_no_returns() {
         read("0 0 0\n".repeat(50).as_bytes(), Format::Xyz).map(|c| c.points()),
         Ok(50)
     );
+}
+
+#[test]
+fn many_points_at_minus_one_are_no_returns() {
+    let text = sphere(60, 1).replace("0 0 0\n", "-1 -1 -1\n");
+    let cloud = read(text.as_bytes(), Format::Xyz).expect("a table");
+    assert_eq!(cloud.skipped, [("no-return", 60)]);
+}
+
+#[test]
+fn words_for_nothing_are_no_points() {
+    for missing in ["<NA>", "\\N", "(null)", "#DIV/0!", "missing", "n.a.", "---"] {
+        let cloud = read(raster(missing, 4).as_bytes(), Format::Xyz).expect("a table");
+        assert_eq!((cloud.points(), cloud.dropped), (300, 100), "{missing}");
+    }
 }
 
 #[test]

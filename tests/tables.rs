@@ -1,8 +1,9 @@
 //! Tables of text as instruments, geographic information systems, viewers and spreadsheets write them.
 #![cfg(not(target_arch = "wasm32"))]
 
+use pointweave::cloud::Unit;
 use pointweave::formats::{
-    Format, Positions, RawCloud, ReadOptions, Reading, detect, read, read_with,
+    Format, Positions, Preview, RawCloud, ReadOptions, Reading, detect, read, read_with,
 };
 
 /// Point `i` of the tables here, with six digits.
@@ -100,6 +101,30 @@ fn names_of_columns_in_any_order() {
         "#X Y Z",
         "Exported by a program\nX,Y,Z",
         "X,Y,Z\nm,m,m",
+        // One word says the axis, the others are the same in all names.
+        "world_x,world_y,world_z",
+        "MeshX,MeshY,MeshZ",
+        "pose.position.x,pose.position.y,pose.position.z",
+        "X Location (m),Y Location (m),Z Location (m)",
+        "X_L93,Y_L93,Z_NGF",
+        "E_UTM32,N_UTM32,H_DHHN2016",
+        "X0,Y0,Z0",
+        "P[x],P[y],P[z]",
+        // Other languages.
+        "ESTE (m),NORTE (m),ELEVACIÓN (m)",
+        "Coordenada X,Coordenada Y,Coordenada Z",
+        "Leste,Norte,Cota",
+        "X-coördinaat,Y-coördinaat,Hoogte",
+        "Öst,Norr,Höjd",
+        "Øst,Nord,Højde",
+        "Wschód,Północ,Wysokość",
+        "Souřadnice X,Souřadnice Y,Výška",
+        "Восток,Север,Высота",
+        "東,北,標高",
+        // Above the names.
+        "Scan 1 2 3 of 4\nX,Y,Z",
+        "VARIABLES = \"X\", \"Y\", \"Z\"",
+        "# columns: x y z",
     ] {
         let header = if header.contains(';') {
             &header.replace(';', ",")
@@ -134,6 +159,103 @@ fn names_of_columns_in_any_order() {
     );
 }
 
+/// What a person is shown of a table.
+fn preview(text: &str) -> Preview {
+    let mut reading = Reading::new(Some(Format::Xyz), None, text.len() as u64);
+    reading.push(text.as_bytes()).expect("rows");
+    assert!(reading.end().expect("the end"));
+    reading.summary().preview.expect("a preview")
+}
+
+#[test]
+fn heights_of_other_names_and_depths_are_doubted() {
+    let xyz = |[x, y, z]: [String; 3], _| format!("{x},{y},{z}");
+    for (header, weak) in [
+        ("lon_wgs84,lat_wgs84,ellipsoid_height", false),
+        ("x,y,height above ground", true),
+        ("X,Y,Depth", true),
+        ("V1,V2,V3", true),
+    ] {
+        let text = table(header, xyz);
+        assert_eq!(right(&text).columns, ["x", "y", "z"], "{header}");
+        assert_eq!(preview(&text).weak, weak, "{header}");
+    }
+    // Numbers of columns are no point.
+    let rows = table("", |[x, y, z], _| format!("{x}0,{y}0,{z}0"));
+    let decimal = |line: &&str| line.split(',').all(|value| value.contains('.'));
+    let rows: Vec<&str> = rows.lines().filter(decimal).collect();
+    let numbered = read(
+        format!("0,1,2\n{}", rows.join("\n")).as_bytes(),
+        Format::Xyz,
+    );
+    assert_eq!(numbered.map(|cloud| cloud.points()), Ok(rows.len()));
+}
+
+#[test]
+fn names_say_the_unit() {
+    let xyz = |[x, y, z]: [String; 3], _| format!("{x},{y},{z}");
+    for (header, unit) in [
+        ("X [mm],Y [mm],Z [mm]", Some(Unit::Millimetre)),
+        ("X (US ft),Y (US ft),Z (US ft)", Some(Unit::SurveyFoot)),
+        ("x,y,z\nm,m,m", Some(Unit::Metre)),
+        ("lon,lat,alt", Some(Unit::Degree)),
+        ("x,y,z", None),
+    ] {
+        assert_eq!(right(&table(header, xyz)).unit, unit, "{header}");
+    }
+}
+
+#[test]
+fn words_of_other_things_are_no_axes() {
+    let header = "vel_x,vel_y,vel_z,red_count,green_count,blue_count,x,y,z";
+    let text = table(header, |[x, y, z], _| format!("1,2,3,4,5,6,{x},{y},{z}"));
+    let cloud = right(&text);
+    assert_eq!(cloud.columns.join(","), header);
+    assert!(cloud.colors.is_none());
+}
+
+#[test]
+fn titles_below_the_rows_and_names_again_are_passed_over() {
+    let xyz = |[x, y, z]: [String; 3], _| format!("{x},{y},{z}");
+    let text = table("Points:0,Points:1,Points:2", xyz);
+    let (first, second) =
+        text.split_at(text.match_indices('\n').nth(20).map_or(0, |(at, _)| at + 1));
+    for text in [
+        format!("{first}Points:0,Points:1,Points:2\n{second}"),
+        format!("{text}\nEND OF FILE\n"),
+        format!("{text}\u{1a}"),
+        format!("{text}\0\0\0\0"),
+    ] {
+        right(&text);
+    }
+    let error = read(format!("{text}Total,40,rows\n").as_bytes(), Format::Xyz).expect_err("no row");
+    assert_eq!(error.code(), "bad-file");
+    // Names alone are no empty scan where rows follow that are none.
+    let error = read(b"x;y;z\n1:2;3:4;5:6\n", Format::Xyz).expect_err("no rows");
+    assert_eq!(error.code(), "bad-file");
+}
+
+#[test]
+fn rows_in_brackets_and_quotes_in_quotes() {
+    let xyz = |[x, y, z]: [String; 3], _| format!("({x}, {y}, {z})");
+    right(&table("", xyz));
+    right(&table("", |place, _| format!("[{}]", place.join(" "))));
+    let text = table("x,y,z,label", |[x, y, z], i| {
+        format!("{x},{y},{z},\"a \"\"b\"\", c{i}\"")
+    });
+    assert_eq!(right(&text).columns, ["x", "y", "z", "-"]);
+}
+
+#[test]
+fn a_time_in_front_is_never_x() {
+    for (start, step) in [(1.6e9, 0.1), (1.6e18, 1e8)] {
+        let text = table("", |[x, y, z], i| {
+            format!("{} {x} {y} {z}", start + step * i as f64)
+        });
+        assert_eq!(right(&text).columns, ["-", "x", "y", "z"]);
+    }
+}
+
 #[test]
 fn names_of_colours_and_normals() {
     for (header, wide) in [
@@ -144,6 +266,13 @@ fn names_of_colours_and_normals() {
         ("X,Y,Z,RGB:0,RGB:1,RGB:2", 1),
         ("X,Y,Z,R(0-255),G(0-255),B(0-255)", 1),
         ("X,Y,Z,R,G,B", 257),
+        ("x,y,z,ColorR,ColorG,ColorB", 1),
+        ("x,y,z,R8,G8,B8", 1),
+        ("x,y,z,red16,green16,blue16", 257),
+        ("x,y,z,r [8bit],g [8bit],b [8bit]", 1),
+        ("x,y,z,scalar_R,scalar_G,scalar_B", 1),
+        ("x,y,z,rood,groen,blauw", 1),
+        ("x,y,z,vermelho,verde,azul", 1),
     ] {
         let text = table(header, |[x, y, z], i| {
             let [r, g, b] = color(i).map(|c| u32::from(c) * wide);
@@ -151,17 +280,26 @@ fn names_of_colours_and_normals() {
         });
         check_colors(&right(&text), &text);
     }
-    let text = table("x y z normal_x normal_y normal_z", |[x, y, z], _| {
-        format!("{x} {y} {z} 0 0.6 0.8")
-    });
-    assert_eq!(
-        right(&text).normals.map(|n| n[..3].to_vec()),
-        Some(vec![0.0, 0.6, 0.8])
-    );
+    for header in [
+        "x y z normal_x normal_y normal_z",
+        "x y z vnx vny vnz",
+        "X Y Z I J K",
+    ] {
+        let text = table(header, |[x, y, z], _| format!("{x} {y} {z} 0 0.6 0.8"));
+        assert_eq!(
+            right(&text).normals.map(|n| n[..3].to_vec()),
+            Some(vec![0.0, 0.6, 0.8]),
+            "{header}"
+        );
+    }
+    let cells = table("x y z i j k", |[x, y, z], i| format!("{x} {y} {z} {i} 0 3"));
+    assert_eq!(names(&right(&cells)), ["i", "j", "k"]);
 }
 
 #[test]
 fn decimal_commas_with_any_delimiter() {
+    let text = table("", |place, _| place.map(|x| x.replace('.', ",")).join(", "));
+    assert_eq!(right(&text).columns, ["x", "y", "z"]);
     let comma = |x: &str| x.replace('.', ",");
     for delimiter in ["\t", " ", ";", "  ", " ; ", "|"] {
         for header in ["", "X\tY\tZ", "# survey"] {
@@ -383,6 +521,24 @@ fn packed_colours() {
         });
         check_colors(&right(&text), &text);
     }
+    type Text = fn([u8; 3]) -> String;
+    let texts: [(&str, Text); 4] = [
+        ("x;y;z;color", |[r, g, b]| format!("rgb({r}, {g}, {b})")),
+        ("x;y;z;color", |[r, g, b]| format!("({r},{g},{b})")),
+        // Hexadecimal digits, and the bits of a number, without a name.
+        ("", |[r, g, b]| format!("{r:02X}{g:02X}{b:02X}")),
+        ("", |[r, g, b]| {
+            format!("{:e}", f32::from_bits(u32::from_be_bytes([0, r, g, b])))
+        }),
+    ];
+    for (header, write) in texts {
+        let text = table(header, |[x, y, z], i| {
+            format!("{x};{y};{z};{}", write(color(i)))
+        });
+        check_colors(&right(&text), &text);
+    }
+    let named = table("x,y,z,color", |[x, y, z], _| format!("{x},{y},{z},grey"));
+    assert_eq!(right(&named).columns, ["x", "y", "z", "-"]);
     let class = table("x,y,z,color", |[x, y, z], i| {
         format!("{x},{y},{z},{}", i % 5)
     });
@@ -466,12 +622,6 @@ fn a_caller_says_what_the_columns_are() {
 
 #[test]
 fn the_first_rows_are_shown_and_doubt_is_said() {
-    let preview = |text: &str| {
-        let mut reading = Reading::new(Some(Format::Xyz), None, text.len() as u64);
-        reading.push(text.as_bytes()).expect("rows");
-        assert!(reading.end().expect("the end"));
-        reading.summary().preview.expect("a preview")
-    };
     let named = preview(&table("X;Y;Z", |xyz, _| {
         xyz.map(|x| x.replace('.', ",")).join(";")
     }));

@@ -67,8 +67,8 @@ export default defineConfig({
   worker: { format: 'es', plugins: () => [withoutMissing()] },
   build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
   // The package is a neighbour of this folder, outside Vite's root.
-  // It has no packages of its own: three.js is the page's.
-  resolve: { dedupe: ['three'] },
+  // It has no packages of its own: these are the page's.
+  resolve: { dedupe: ['three', '@gltf-transform/core', '@gltf-transform/extensions', 'meshoptimizer'] },
   server: { headers: isolation, fs: { allow: ['..'] } },
   preview: { headers: isolation },
 });

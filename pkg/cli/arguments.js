@@ -51,15 +51,22 @@ export function parse(argv) {
   if (first === 'help') return { help: COMMANDS.find((name) => name === rest[0]) };
   if (first === undefined) throw new UsageError(`a command is needed: ${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`);
   const command = COMMANDS.find((name) => name === first);
-  if (!command) throw new UsageError(`there is no command '${first}'${hint(first, COMMANDS)}`);
+  if (!command) throw new UsageError(noCommand(first));
   const { values, positionals: inputs } = parseFlags(command, rest);
   return values.help ? { help: command } : task(command, values, inputs);
 }
 
-/** @param {Command} command @param {string[]} argv */
-function parseFlags(command, argv) {
-  /** @type {import('node:util').ParseArgsConfig['options'] & {}} */
-  const options = {
+/** @param {string} first what stands where a command should */
+function noCommand(first) {
+  if (first.startsWith('-')) return `a command comes before ${first}: reduce, reconstruct or inspect`;
+  const known = hint(first, COMMANDS);
+  if (known || !/[./\\]/.test(first)) return `there is no command '${first}'${known}`;
+  return `'${first}' looks like a file, and a command comes before it: did you mean pointweave reconstruct ${first} -o mesh.glb?`;
+}
+
+/** @param {Command} command @returns {import('node:util').ParseArgsConfig['options'] & {}} */
+function optionsOf(command) {
+  return {
     json: { type: 'boolean' },
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
@@ -67,6 +74,11 @@ function parseFlags(command, argv) {
     ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...PREPARE_FLAGS }),
     ...parserOptions(flagsOf(command)),
   };
+}
+
+/** @param {Command} command @param {string[]} argv */
+function parseFlags(command, argv) {
+  const options = optionsOf(command);
   try {
     return /** @type {{ values: Record<string, any>, positionals: string[] }} */ (parseArgs({ args: argv, options, allowPositionals: true }));
   } catch (error) {
@@ -77,12 +89,18 @@ function parseFlags(command, argv) {
 /** @param {Error & { code?: string }} error @param {Command} command @param {string[]} names */
 function explain({ code, message }, command, names) {
   const unknown = code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' && message.match(/'--?([^']+)'/);
-  if (unknown) return `${command} has no option '${unknown[1]}'${hint(unknown[1], names, '--')}`;
+  if (unknown) return `${command} has no option '${unknown[1]}'${elsewhere(unknown[1]) || hint(unknown[1], names, '--')}`;
   const value = code === 'ERR_PARSE_ARGS_INVALID_OPTION_VALUE' && message.match(/--([\w-]+)/);
   if (!value) return message;
   const flag = `--${value[1]}`;
   if (message.includes('does not take')) return `${flag} takes no value`;
   return `${flag} needs a value${message.includes('ambiguous') ? `; one that begins with - is given as ${flag}=-…` : ''}`;
+}
+
+/** Which commands have it. @param {string} flag its name or its letter */
+function elsewhere(flag) {
+  const having = COMMANDS.filter((name) => Object.entries(optionsOf(name)).some(([long, { short }]) => flag === long || flag === short));
+  return having.length > 0 ? `, which is for ${having.join(' and ')}` : '';
 }
 
 /** @param {string} word @param {string[]} names */

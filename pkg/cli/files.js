@@ -35,7 +35,9 @@ export function besideOf(input) {
   const folder = input === '-' ? '.' : dirname(input);
   return async (/** @type {string} */ name) => {
     const path = name.replaceAll('\\', '/');
-    const inside = [join(folder, path), join(folder, basename(path))].filter((file) => !relative(folder, file).startsWith(`..${sep}`));
+    // A library may have been renamed with its mesh.
+    const own = /\.mtl$/i.test(path) ? [join(folder, `${basename(input).replace(/\.[^.]*$/, '')}.mtl`)] : [];
+    const inside = [join(folder, path), join(folder, basename(path)), ...own].filter((file) => !relative(folder, file).startsWith(`..${sep}`));
     for (const file of inside) {
       const bytes = await readFile(file).catch(() => undefined);
       if (bytes) return bytes;

@@ -2,6 +2,7 @@
 import { PointweaveError } from '../engine/errors.js';
 import { TARGETS } from '../engine/options-table.js';
 import { TABLES } from '../engine/options.js';
+import { rule } from '../engine/rules.js';
 import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
@@ -29,6 +30,12 @@ export const WORDS = {
   meshopt: 'a compressed GLB file; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer',
 };
 
+/** `--count auto` is `target: 'auto'`. */
+const AMOUNTS = {
+  ...TARGETS,
+  count: rule(`'auto' or ${TARGETS.count.expected}`, (value, path) => value === 'auto' || TARGETS.count.accepts(value, path)),
+};
+
 /**
  * @param {Command} command
  * @returns {Flag[]}
@@ -37,7 +44,7 @@ export function flagsOf(command) {
   const read = flags('read', TABLES.read);
   if (command === 'inspect') return read;
   if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
-  const reduce = [...flags('target', TARGETS), ...flags('reduce', TABLES.reduce)];
+  const reduce = [...flags('target', AMOUNTS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
@@ -94,7 +101,7 @@ export function optionsFrom(command, values) {
   }
   const targets = Object.keys(given.target);
   if (targets.length > 1) throw new UsageError(`${targets.map((key) => `--${key}`).join(' and ')} exclude each other`);
-  if (targets.length === 1) given.reduce.target = given.target;
+  if (targets.length === 1) given.reduce.target = given.target.count === 'auto' ? 'auto' : given.target;
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
@@ -122,8 +129,17 @@ function valueOf({ name, key, group, rule, kind }, values) {
 export function parseValue(name, rule, text) {
   const number = text.trim() === '' ? NaN : Number(text);
   const value = [text, number].find((candidate) => rule.accepts(candidate, name));
-  if (value === undefined) throw new UsageError(`--${name} is '${text}': expected ${rule.expected}`);
-  return value;
+  if (value !== undefined) return value;
+  const meant = shareIn(text);
+  const hint = meant !== undefined && rule.accepts(meant, name) ? `: did you mean ${meant}?` : '';
+  throw new UsageError(`--${name} is '${text}': expected ${rule.expected}${hint}`);
+}
+
+/** The number that a percentage or a fraction means. @param {string} text `20%`, `20 %`, `1/3` @returns {number | undefined} */
+function shareIn(text) {
+  const [, above, sign, below] = /^\s*([\d.]+)\s*(%|\/)\s*([\d.]*)\s*$/.exec(text) ?? [];
+  const value = sign === '%' && below === '' ? Number(above) / 100 : Number(above) / Number(below);
+  return Number.isFinite(value) ? Number(value.toPrecision(4)) : undefined;
 }
 
 /** @param {string} name @param {string} key @param {Rule} rule @param {string[]} texts each `name=how` */

@@ -1,13 +1,10 @@
-/**
- * Attributes as properties, as HTML does it: a property reads what its attribute says and writes it there. What is not valid
- * counts as not given; null and undefined take the attribute away.
- */
+/** The element's own attributes as properties, as HTML does it: a property reads what its attribute says and writes it there. */
+
+import { readChoice, readNumber, write } from './reflection.js';
+import { SWITCHED, Switching, propertyOf } from './switching.js';
 
 /** @import { Loading, Up, View } from '../element.js' */
 /** @import { Orientation } from '../types.js' */
-
-/** There is none on a server, where the class is never made. @type {typeof HTMLElement} */
-const Base = globalThis.HTMLElement ?? /** @type {any} */ (class {});
 
 /** The first is what an attribute means that is missing or wrong. */
 const VIEWS = /** @type {const} */ (['mesh', 'reduced', 'points']);
@@ -17,13 +14,13 @@ const ORIENTATIONS = /** @type {const} */ (['auto', 'normals', 'viewpoints', 'up
 const MOST_POINTS = 0xffffffff;
 const MOST_THREADS = 64;
 
-export class Reflecting extends Base {
-  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'loading', 'up', 'orientation', 'flip'];
+export class Reflecting extends Switching {
+  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'loading', 'up', 'orientation', 'flip', ...SWITCHED];
 
   /** For use at the end of a constructor: what a page has set before the element was defined goes where it belongs. */
   upgrade() {
     for (const attribute of Reflecting.observedAttributes) {
-      const name = /** @type {'src'} */ (attribute.replace(/-(.)/g, (_, letter) => letter.toUpperCase()));
+      const name = /** @type {'src'} */ (propertyOf(attribute));
       if (!Object.hasOwn(this, name)) continue;
       const value = this[name];
       delete /** @type {Partial<this>} */ (this)[name];
@@ -141,29 +138,4 @@ export class Reflecting extends Base {
   set controls(value) {
     this.toggleAttribute('controls', Boolean(value));
   }
-}
-
-/** @param {HTMLElement} element @param {string} name @param {unknown} value */
-function write(element, name, value) {
-  if (value === null || value === undefined) element.removeAttribute(name);
-  else element.setAttribute(name, String(value));
-}
-
-/** @param {HTMLElement} element @param {string} name @param {(value: number) => boolean} valid */
-function readNumber(element, name, valid) {
-  const text = element.getAttribute(name)?.trim();
-  const value = text ? Number(text) : NaN;
-  return valid(value) ? value : null;
-}
-
-/**
- * In any case of letters, as HTML's own.
- * @template {string} Choice
- * @param {HTMLElement} element
- * @param {string} name
- * @param {readonly Choice[]} choices
- */
-function readChoice(element, name, choices) {
-  const text = element.getAttribute(name)?.trim().toLowerCase();
-  return choices.find((choice) => choice === text) ?? choices[0];
 }

@@ -1,12 +1,19 @@
 /** The element itself: attributes and the viewport come in, jobs and events go out. */
-import { PointweaveError } from '../engine/errors.js';
+import { PointweaveError, toRecord } from '../engine/errors.js';
 import { listenToKeys } from '../viewer/keyboard.js';
 import { calm, inSight } from '../viewer/watching.js';
-import { Reflecting } from './attributes.js';
+import { nextLoad } from './awaited.js';
+import { describe, setOrRemove } from './described.js';
+import { Hotspots } from './hotspots.js';
+import { KEYS } from './keys.js';
 import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
-import { isNamedGlb, openSource } from './source.js';
+import { Posed, VIEWER } from './posed.js';
+import { Prompt } from './prompt.js';
+import { isNamedGlb, openSource, wishOf } from './source.js';
 import { Speech } from './speech.js';
+import { CAMERA, LIGHT } from './switching.js';
+import { themeOf } from './theme.js';
 import { inReach } from './watching.js';
 import { WORDS } from './words.js';
 
@@ -15,22 +22,9 @@ import { WORDS } from './words.js';
 /** @import { Viewer } from '../viewer.js' */
 /** @import { Glb, Scan } from './source.js' */
 
-/** Room for the toolbar, in CSS pixels. */
-const TOOLBAR = 64;
-
-/** @typedef {{ choose: (view: View) => void, pause: () => void }} Hands */
-
-/** Keys besides those of the viewer. @type {Record<string, (hands: Hands) => void>} */
-const KEYS = {
-  1: ({ choose }) => choose('points'),
-  2: ({ choose }) => choose('reduced'),
-  3: ({ choose }) => choose('mesh'),
-  ' ': ({ pause }) => pause(),
-};
-
 /** Work under way. @typedef {{ src: string, controller: AbortController, share: number, stage: Stage }} Job */
 
-export class PointWeaveElement extends Reflecting {
+export class PointWeaveElement extends Posed {
   /** What people see and hear; assign other words for another language. @type {Words} */
   static words = WORDS;
   /** As that of `createEngine`, for files that are elsewhere. @type {EngineOptions['wasmUrl']} */
@@ -41,8 +35,6 @@ export class PointWeaveElement extends Reflecting {
   #parts = buildParts(this.attachShadow({ mode: 'open', delegatesFocus: true }));
   #panels = new Panels(this.#parts);
   #speech = new Speech(this.#parts.spoken);
-  /** @type {Viewer | undefined} */
-  #viewer;
   /** What `src` holds, once it is there. @type {Glb | Scan | undefined} */
   #source;
   /** @type {Job | undefined} */
@@ -52,6 +44,11 @@ export class PointWeaveElement extends Reflecting {
   #seen = false;
   #paused = false;
   #scheduled = false;
+  /** The poster has been sent away by the page, where it stays until then. */
+  #dismissed = false;
+  #prompt = new Prompt(this.#parts.prompt);
+  #hotspots = new Hotspots(this, this.#parts.hotspots);
+  #resized = new ResizeObserver(() => this.#dress());
 
   constructor() {
     super();
@@ -60,12 +57,12 @@ export class PointWeaveElement extends Reflecting {
     retry.addEventListener('click', () => this.#retry());
     reset.addEventListener('click', () => this.resetCamera());
     pause.addEventListener('click', () => this.#pause());
-    fullscreen.addEventListener('click', () => this.#toggleFullscreen());
+    fullscreen.addEventListener('click', () => this.toggleFullscreen());
     image.addEventListener('error', () => this.#panels.setPoster(''));
-    poster.addEventListener('slotchange', () => this.#panels.showPoster(!this.#loaded));
+    poster.addEventListener('slotchange', () => this.#cover());
     for (const { input, view } of choices) input.addEventListener('change', () => this.#choose(view));
     canvas.addEventListener('transitionend', () => this.#color());
-    listenToKeys(canvas, KEYS, () => (this.controls && this.#viewer ? this.#hands : undefined));
+    listenToKeys(canvas, KEYS, () => (this.controls && this[VIEWER] ? this.#hands : undefined));
     this.upgrade();
   }
 
@@ -75,7 +72,8 @@ export class PointWeaveElement extends Reflecting {
     inReach().add(this, (isNear) => isNear && this.#come());
     inSight().add(this, (isSeen) => this.#see(isSeen));
     calm().addEventListener('change', this.#dress);
-    this.#viewer?.resume();
+    this.#resized.observe(this);
+    this[VIEWER]?.resume();
     this.#panels.label(PointWeaveElement.words);
     this.#describe();
     this.#dress();
@@ -93,14 +91,17 @@ export class PointWeaveElement extends Reflecting {
       inSight().delete(this);
       this.#see(false);
       calm().removeEventListener('change', this.#dress);
+      this.#resized.disconnect();
       this.#speech.hush();
-      this.#viewer?.suspend();
+      this[VIEWER]?.suspend();
     });
   }
 
   /** @param {string} name @param {string | null} before @param {string | null} now */
   attributeChangedCallback(name, before, now) {
     if (before === now) return;
+    if (CAMERA.includes(name)) this.pose(name);
+    if (LIGHT.includes(name)) this.light().catch((error) => this.#fail(this.src, error));
     switch (name) {
       case 'src':
         this.#forget();
@@ -130,8 +131,14 @@ export class PointWeaveElement extends Reflecting {
         this.#paused = false;
         this.#dress();
         break;
+      case 'reveal':
+        this.#cover();
+        break;
+      case 'interaction-prompt':
+        this.#prompt.hide();
+        break;
       case 'up':
-        if (this.#viewer) this.#viewer.up = this.up;
+        if (this[VIEWER]) this[VIEWER].up = this.up;
         break;
       case 'loading':
         if (this.loading === 'eager' && this.#attached) this.#come();
@@ -156,25 +163,26 @@ export class PointWeaveElement extends Reflecting {
     this.#schedule();
   }
 
-  resetCamera() {
-    this.#viewer?.home();
+  /** What `load` tells, as soon as the view that is asked for is shown; rejects with what `error` tells. */
+  async whenLoaded() {
+    return this.loaded && this.#source && this[VIEWER] ? this.#shown(this.src, this.#source, this[VIEWER]) : nextLoad(this);
   }
 
-  /** The picture as it is shown, without background: to make a poster of. @param {string} [type] @param {number} [quality] */
-  toBlob(type, quality) {
-    if (this.#viewer) return this.#viewer.toBlob(type, quality);
-    return new Promise((/** @type {(blob: Blob | null) => void} */ resolve) => this.#parts.canvas.toBlob(resolve, type, quality));
+  /** Sends the poster away, which `reveal="manual"` keeps until then. */
+  dismissPoster() {
+    this.#dismissed = true;
+    this.#come();
+    this.#cover();
+  }
+
+  /** Puts the poster back. */
+  showPoster() {
+    this.#dismissed = false;
+    this.#panels.showPoster(true);
   }
 
   get #loaded() {
-    return Boolean(this.#source && this.#viewer?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
-  }
-
-  /** @returns {import('./source.js').Wish} */
-  get #wish() {
-    const { count, ratio, orientation, flip } = this;
-    const target = count !== null ? { count } : ratio !== null ? { ratio } : undefined;
-    return { target, orientation, flip };
+    return Boolean(this.#source && this[VIEWER]?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
   }
 
   /** Of what is shown. */
@@ -196,11 +204,8 @@ export class PointWeaveElement extends Reflecting {
     if (seen) this.#color();
   }
 
-  /** The layers' colours, which the canvas carries as colours that it has no use for itself (sheet.js). */
   #color() {
-    if (!this.#viewer) return;
-    const { color, caretColor, columnRuleColor } = getComputedStyle(this.#parts.canvas);
-    this.#viewer.colors = { mesh: color, points: caretColor, reduced: columnRuleColor };
+    if (this[VIEWER]) this[VIEWER].colors = themeOf(this, this.#parts.canvas);
   }
 
   /** However many attributes change at once, what follows from them is done once. */
@@ -248,7 +253,7 @@ export class PointWeaveElement extends Reflecting {
         this.#showBest();
       }
       while (source.kind === 'scan' && !viewer.has(this.view)) {
-        await source.make(this.view, this.#wish, work);
+        await source.make(this.view, wishOf(this), work);
         signal.throwIfAborted();
         const { reduced = null, mesh = null } = source;
         viewer.set('reduced', reduced && { ...reduced, oriented: Boolean(mesh) });
@@ -272,13 +277,18 @@ export class PointWeaveElement extends Reflecting {
     const [{ createViewer }] = await Promise.all([import('../viewer/viewer.js'), glb]).catch((error) => {
       throw new PointweaveError({ code: 'load-failed', message: `three.js did not load: ${error.message}` });
     });
-    if (this.#viewer) return this.#viewer;
+    if (this[VIEWER]) return this[VIEWER];
     const viewer = createViewer(this.#parts.canvas, { interactive: this.controls, up: this.up });
     viewer.addEventListener('move', ({ detail: { by } }) => {
+      if (by !== 'program') this.#prompt.done();
+      this.tellMove(by);
       if (by === 'keys') this.#speech.atRest(() => PointWeaveElement.words.pose(viewer.pose));
     });
     if (!this.#attached) viewer.suspend();
-    this.#viewer = viewer;
+    this[VIEWER] = viewer;
+    this.pose();
+    await this.light();
+    this.#hotspots.follow(viewer);
     this.#color();
     this.#dress();
     return viewer;
@@ -287,19 +297,24 @@ export class PointWeaveElement extends Reflecting {
   /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer */
   #finish(src, source, viewer) {
     this.#panels.end();
-    const view = this.#showBest();
+    this.#showBest();
     viewer.draw();
-    const detail = { src, kind: source.kind, view, ...viewer.size(view), report: this.report };
+    const detail = this.#shown(src, source, viewer);
     const { words } = PointWeaveElement;
     this.#speech.say([this.alt || words.untitled, words.shown(detail), ...this.#doubts].join('. '));
     this.#send('load', detail);
+    this.#prompt.wait(() => this.controls && this.loaded && this.interactionPrompt === 'auto');
+  }
+
+  /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer @returns {LoadDetail} */
+  #shown(src, source, viewer) {
+    const view = this.#best();
+    return { src, kind: source.kind, view, ...viewer.size(view), report: this.report };
   }
 
   /** @param {string} src @param {unknown} cause */
   #fail(src, cause) {
-    const error = /** @type {ErrorDetail['error']} */ (cause instanceof PointweaveError
-      ? cause
-      : new PointweaveError({ code: 'internal', message: cause instanceof Error ? cause.message : String(cause) }));
+    const error = /** @type {ErrorDetail['error']} */ (cause instanceof PointweaveError ? cause : new PointweaveError(toRecord(cause)));
     const { errors } = PointWeaveElement.words;
     this.#panels.end();
     this.#panels.showError(errors[error.code] ?? errors.other, error.message);
@@ -333,9 +348,10 @@ export class PointWeaveElement extends Reflecting {
   #forget() {
     this.#abort('src');
     this.#source = undefined;
-    this.#viewer?.clear();
+    this[VIEWER]?.clear();
     this.#panels.hideError();
     this.#panels.showPoster(true);
+    this.#prompt.hide();
     this.#dress();
   }
 
@@ -344,7 +360,7 @@ export class PointWeaveElement extends Reflecting {
     if (this.#source?.kind !== 'scan') return; // the job that fetches will ask for the target when it is there
     this.#abort('target');
     this.#source.forget();
-    for (const view of /** @type {const} */ (['reduced', 'mesh'])) this.#viewer?.set(view, null);
+    for (const view of /** @type {const} */ (['reduced', 'mesh'])) this[VIEWER]?.set(view, null);
     this.#showBest();
   }
 
@@ -356,7 +372,7 @@ export class PointWeaveElement extends Reflecting {
 
   /** The view that is asked for, or what there is instead. @returns {View} */
   #best() {
-    return [this.view, ...VIEWS.toReversed()].find((view) => this.#viewer?.has(view)) ?? this.view;
+    return [this.view, ...VIEWS.toReversed()].find((view) => this[VIEWER]?.has(view)) ?? this.view;
   }
 
   /** What may be wrong with what is shown, in words. */
@@ -368,10 +384,16 @@ export class PointWeaveElement extends Reflecting {
   #showBest() {
     const view = this.#best();
     setOrRemove(this.#parts.canvas, 'title', this.#doubts.join(' '));
-    if (this.#viewer) this.#viewer.view = view;
-    if (this.#loaded || !this.#panels.hasPoster) this.#panels.showPoster(false);
+    if (this[VIEWER]) this[VIEWER].view = view;
+    this.#cover();
     this.#dress();
     return view;
+  }
+
+  /** The poster lies over the picture until that is there, and sent for. */
+  #cover() {
+    const ready = this.#loaded || (Boolean(this.#source) && !this.#panels.hasPoster);
+    this.#panels.showPoster(!ready || (this.reveal === 'manual' && !this.#dismissed));
   }
 
   /** By hand, unlike `view = …`. @param {View} view */
@@ -379,12 +401,12 @@ export class PointWeaveElement extends Reflecting {
     if (!this.#views.includes(view) || view === this.view) return;
     this.view = view;
     this.dispatchEvent(new Event('change'));
-    if (this.#viewer?.has(view)) this.#speech.say(PointWeaveElement.words.shown({ view, ...this.#viewer.size(view) }));
+    if (this[VIEWER]?.has(view)) this.#speech.say(PointWeaveElement.words.shown({ view, ...this[VIEWER].size(view) }));
   }
 
   /** What can be chosen: all of a scan, for it is computed; what there is in a GLB. */
   get #views() {
-    return this.#source?.kind === 'glb' ? VIEWS.filter((view) => this.#viewer?.has(view)) : [...VIEWS];
+    return this.#source?.kind === 'glb' ? VIEWS.filter((view) => this[VIEWER]?.has(view)) : [...VIEWS];
   }
 
   /** Brings what can be handled in line with the attributes. */
@@ -394,22 +416,14 @@ export class PointWeaveElement extends Reflecting {
     const view = this.#source?.kind === 'glb' ? this.#best() : this.view;
     const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
-    if (!this.#viewer) return;
-    this.#viewer.insets = { bottom: controls ? TOOLBAR : 0 };
-    this.#viewer.interactive = controls;
-    this.#viewer.autoRotate = turns && !this.#paused;
+    if (!this[VIEWER]) return;
+    this[VIEWER].insets = controls ? this.#panels.room : { top: 0, bottom: 0 };
+    this[VIEWER].interactive = controls;
+    this[VIEWER].autoRotate = turns && !this.#paused;
   };
 
-  /** Without controls it is an image, with them something to handle. */
   #describe() {
-    const { canvas } = this.#parts;
-    const { controls } = this;
-    const decorative = this.hasAttribute('alt') && !this.alt && !controls;
-    canvas.setAttribute('role', controls ? 'application' : 'img');
-    canvas.setAttribute('aria-label', this.alt || PointWeaveElement.words.untitled);
-    setOrRemove(canvas, 'tabindex', controls && '0');
-    setOrRemove(canvas, 'aria-describedby', controls && 'keys');
-    setOrRemove(canvas, 'aria-hidden', decorative && 'true');
+    describe(this.#parts.canvas, this, PointWeaveElement.words.untitled);
   }
 
   #pause() {
@@ -418,12 +432,7 @@ export class PointWeaveElement extends Reflecting {
     this.#dress();
   }
 
-  async #toggleFullscreen() {
-    if (document.fullscreenElement === this) await document.exitFullscreen();
-    else await this.requestFullscreen();
-  }
-
-  /** What the keys act on that do not move. @type {Hands} */
+  /** What the keys act on that do not move. @type {import('./keys.js').Hands} */
   #hands = { choose: (view) => this.#choose(view), pause: () => this.#pause() };
 
   /**
@@ -434,10 +443,4 @@ export class PointWeaveElement extends Reflecting {
   #send(type, detail) {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
-}
-
-/** @param {HTMLElement} element @param {string} name @param {string | false} value */
-function setOrRemove(element, name, value) {
-  if (value) element.setAttribute(name, value);
-  else element.removeAttribute(name);
 }

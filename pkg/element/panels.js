@@ -6,6 +6,10 @@ import { setIcon } from './parts.js';
 
 /** A job this short shows no bar: it would only flash. */
 const PATIENCE_MS = 200;
+/** Between toolbar and picture, in CSS pixels. */
+const GAP = 4;
+/** A part of the toolbar without a button is no higher. */
+const BARE = 10;
 
 export class Panels {
   #parts;
@@ -18,7 +22,7 @@ export class Panels {
 
   /** Puts the words where they belong. @param {Words} words */
   label(words) {
-    const { keys, legend, choices, reset, fullscreen, cancel, retry } = this.#parts;
+    const { keys, legend, choices, reset, fullscreen, cancel, retry, errorMore } = this.#parts;
     keys.textContent = words.keys;
     legend.textContent = words.viewsLabel;
     for (const { view, words: place } of choices) place.textContent = words.views[view];
@@ -28,6 +32,7 @@ export class Panels {
     }
     cancel.textContent = words.cancel;
     retry.textContent = words.retry;
+    errorMore.textContent = words.details;
   }
 
   /** @param {string} src '' for none */
@@ -74,15 +79,28 @@ export class Panels {
 
   /** @param {string} title @param {string} [text] */
   showError(title, text = '') {
-    const { error, errorTitle, errorText } = this.#parts;
+    const { error, errorTitle, errorText, errorDetails } = this.#parts;
     errorTitle.textContent = title;
     errorText.textContent = text;
-    errorText.hidden = !text;
+    errorDetails.hidden = !text;
+    errorDetails.open = false;
     error.hidden = false;
   }
 
   hideError() {
     this.#parts.error.hidden = true;
+  }
+
+  /** What the toolbar takes of the picture's upper and lower half, in CSS pixels. */
+  get room() {
+    const { frame, toolbar, views, tools } = this.#parts;
+    const { top, bottom } = frame.getBoundingClientRect();
+    const boxes = toolbar.hidden ? [] : [views, tools].map((part) => part.getBoundingClientRect()).filter(({ height }) => height > BARE);
+    const [above, below] = [true, false].map((wanted) => boxes.filter((box) => (box.top + box.bottom < top + bottom) === wanted));
+    return {
+      top: Math.max(0, ...above.map((box) => box.bottom - top + GAP)),
+      bottom: Math.max(0, ...below.map((box) => bottom - box.top + GAP)),
+    };
   }
 
   /**

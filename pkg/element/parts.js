@@ -7,6 +7,7 @@ const ICONS = {
   reset: 'M4 4v6h6M4.6 10a8 8 0 1 1-.4 4.5',
   pause: 'M9 5v14M15 5v14',
   play: 'M8 5l11 7-11 7z',
+  hand: 'M9 11V5a1.5 1.5 0 0 1 3 0v6m0-1.5a1.5 1.5 0 0 1 3 0V12m0-1a1.5 1.5 0 0 1 3 0v4a6 6 0 0 1-6 6h-1a5 5 0 0 1-4-2l-3.6-4.8a1.5 1.5 0 0 1 2.3-1.9L9 14',
   fullscreen: 'M9 4H4v5M15 4h5v5M9 20H4v-5M15 20h5v-5',
 };
 
@@ -32,9 +33,11 @@ export function buildParts(root) {
   const progress = make('div', { class: 'progress', part: 'progress', hidden: '' }, slot('progress', progressCard));
 
   const errorTitle = make('p', { class: 'error-title', part: 'error-title' });
+  const errorMore = make('summary', { part: 'error-summary' });
   const errorText = make('p', { class: 'error-text', part: 'error-text' });
+  const errorDetails = make('details', { class: 'error-details', part: 'error-details' }, errorMore, errorText);
   const retry = make('button', { class: 'button retry', part: 'button retry', type: 'button' });
-  const errorCard = make('div', { class: 'error-card', part: 'error-card' }, errorTitle, errorText, retry);
+  const errorCard = make('div', { class: 'error-card', part: 'error-card' }, errorTitle, errorDetails, retry);
   const error = make('div', { class: 'error', part: 'error', role: 'alert', hidden: '' }, slot('error', errorCard));
 
   const legend = make('legend', {});
@@ -48,11 +51,14 @@ export function buildParts(root) {
 
   const spoken = make('div', { class: 'spoken', role: 'status' });
 
-  const frame = make('div', { class: 'frame', part: 'frame' }, canvas, poster, progress, error, toolbar, keys, spoken);
+  const hotspots = make('div', { class: 'hotspots', part: 'hotspots' });
+  const prompt = make('div', { class: 'prompt', part: 'prompt', 'aria-hidden': 'true', hidden: '' }, slot('interaction-prompt', icon('hand')));
+
+  const frame = make('div', { class: 'frame', part: 'frame' }, canvas, hotspots, prompt, poster, progress, error, toolbar, keys, spoken);
   root.append(frame);
   return {
-    canvas, keys, image, poster, progress, progressText, bar, cancel, error, errorTitle, errorText, retry,
-    legend, choices, views, reset, pause, fullscreen, tools, toolbar, spoken,
+    canvas, keys, image, poster, progress, progressText, bar, cancel, error, errorTitle, errorMore, errorText, errorDetails, retry,
+    legend, choices, views, reset, pause, fullscreen, tools, toolbar, spoken, frame, hotspots, prompt,
   };
 }
 

@@ -20,6 +20,12 @@ import { inTurn } from './turns.js';
 
 /** What is asked for. @typedef {{ target?: Target, orientation: Orientation, flip: boolean }} Wish */
 
+/** @param {import('./attributes.js').Reflecting} asked @returns {Wish} */
+export function wishOf({ count, ratio, orientation, flip }) {
+  const target = count !== null ? { count } : ratio !== null ? { ratio } : undefined;
+  return { target, orientation, flip };
+}
+
 /** What share of the whole each part takes, about. */
 const FETCHED = { glb: 0.9, points: 0.7, computed: 0.2 };
 const READ = { points: 1, computed: 0.3 };
@@ -59,7 +65,7 @@ export class Scan {
    * @param {Wish} wish
    * @param {Work} work
    */
-  async make(view, { target, ...side }, work) {
+  async make(view, { target = 'auto', ...side }, work) {
     const { signal, onProgress, seen } = work;
     const before = this.#done;
     this.#done = 0;
@@ -73,7 +79,7 @@ export class Scan {
       if (view === 'reduced') {
         this.reduced = await engine.reduce(this.cloud, { target, ...options });
       } else {
-        this.mesh = await engine.reconstruct(this.cloud, { reduce: target && { target }, ...side, ...options });
+        this.mesh = await engine.reconstruct(this.cloud, { reduce: { target }, ...side, ...options });
         this.reduced = this.mesh.cloud;
       }
     });

@@ -14,6 +14,7 @@ export const WORDS = {
   fullscreen: 'Full screen',
   cancel: 'Cancel',
   retry: 'Try again',
+  details: 'Details',
   stopped: 'Stopped before it was done.',
   stages: {
     fetch: 'Loading',

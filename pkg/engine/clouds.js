@@ -53,7 +53,7 @@ function fields(object, name) {
 
 /** @param {Record<string, any>} cloud @returns {PointCloud} */
 function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove, unit, crs, faces }) {
-  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
+  expectArray('positions', positions, Float32Array, Float64Array);
   if (colors !== undefined) expectArray('colors', colors, Uint8Array);
   if (normals !== undefined) expectArray('normals', normals, Float32Array);
   for (const [name, values] of Object.entries(attributes)) expectArray(`attributes.${name}`, values, Float32Array);

@@ -2,6 +2,7 @@
  * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
  * `prepare`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
  */
+import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
@@ -14,7 +15,7 @@ import { badOption } from './rules.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { byteSourceOf } from '../files/byte-source.js';
+import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'called directly' });
 
@@ -25,10 +26,15 @@ const CHOICE = /** @type {const} */ ({ build: 'single', threads: 1, reason: 'cal
  * @type {{ [call in 'reduce' | 'reconstruct' | 'inspect']: (subject: any, own: Record<string, any>, transfer?: boolean) => unknown[] }}
  */
 const ARGUMENTS = {
-  reduce: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
-  reconstruct: (cloud, own, transfer) => [cloudArgument(cloud, transfer), own],
+  reduce: (cloud, own, transfer) => withCount(cloudArgument(cloud, transfer), own),
+  reconstruct: (cloud, own, transfer) => withCount(cloudArgument(cloud, transfer), own),
   inspect: (cloud, _, transfer) => [cloudArgument(cloud, transfer)],
 };
+
+/** @param {import('../types.js').PointCloud} cloud @param {Record<string, any>} own */
+function withCount(cloud, own) {
+  return [cloud, counted(own, cloud)];
+}
 
 /** Calls that wait for wasm of their own. @type {Record<string, (place: Place, subject: any, options: unknown) => Promise<any>>} */
 const WAITING = { read, write, sample };
@@ -110,7 +116,7 @@ async function read(place, data, options) {
   const open = (build, job) => withModule(place, build, { signal }, job).catch((error) => {
     throw readerError(error, build);
   });
-  return readScan(open, file, { name: data.name, ...own }, { signal, onProgress });
+  return readScan(open, file, { name: nameOf(data), ...own }, { signal, onProgress });
 }
 
 /** @param {Place} place @param {any} result @param {unknown} options */

@@ -2,6 +2,7 @@
  * The engine: one queue of calls, and one host (made when needed, made anew after a crash and after most aborts)
  * that does them.
  */
+import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
@@ -14,9 +15,10 @@ import { checkRecipe, halves, lookedAt, ofAllPoints, preparedOf } from './prepar
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
-import { byteSourceOf } from '../files/byte-source.js';
+import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
-/** @import { Build, EngineOptions } from '../types.js' */
+/** @import { Build, CallOptions, CloudInfo, EngineOptions, FileCloud, Model, PointCloud, ReadOptions, ReconstructOptions } from '../types.js' */
+/** @import { PrepareOption, ReduceOptions, ReducedCloud, SampleOptions, SurfaceMesh, WriteOptions } from '../types.js' */
 /** @import { Host, Watch, WorkerLike } from './worker-host.js' */
 /** @import { Bindings, Request, WasmBuild } from './core.js' */
 
@@ -31,6 +33,8 @@ import { byteSourceOf } from '../files/byte-source.js';
  * @property {(workerUrl: EngineOptions['workerUrl']) => WorkerLike} startWorker
  */
 
+/** @typedef {import('../types.js').Engine} Declared */
+
 /** More threads than this cost memory and gain nothing. */
 const MOST_AUTO_THREADS = 16;
 
@@ -40,6 +44,7 @@ const IDLE_MS = 60_000;
 /** A timer of longer than this would fire at once. */
 const LONGEST_TIMER_MS = 2 ** 31 - 1;
 
+/** @implements {Declared} */
 export class Engine {
   /** @type {Platform} */
   #platform;
@@ -90,33 +95,49 @@ export class Engine {
     return [this.#choice.reason, this.#note].filter(Boolean).join('; ');
   }
 
-  /** @param {any} cloud @param {any} [options] */
+  /**
+   * @template {Float32Array | Float64Array} P
+   * @param {PointCloud<P>} cloud
+   * @param {ReduceOptions & PrepareOption & CallOptions} [options]
+   * @returns {Promise<ReducedCloud<P>>}
+   */
   async reduce(cloud, options) {
     return this.#compute('reduce', cloud, options);
   }
 
-  /** @param {any} cloud @param {any} [options] */
+  /**
+   * @template {Float32Array | Float64Array} P
+   * @param {PointCloud<P>} cloud
+   * @param {ReconstructOptions & PrepareOption & CallOptions} [options]
+   * @returns {Promise<SurfaceMesh<P>>}
+   */
   async reconstruct(cloud, options) {
     return this.#compute('reconstruct', cloud, options);
   }
 
-  /** @param {any} cloud one, or an array of them @param {any} steps @param {any} [options] */
+  /**
+   * @template {Float32Array | Float64Array} P
+   * @param {PointCloud<P> | PointCloud<P>[]} cloud
+   * @param {import('../types.js').Step[]} steps
+   * @param {CallOptions} [options]
+   * @returns {Promise<import('../types.js').Prepared<P>>}
+   */
   async prepare(cloud, steps, options) {
     const { transfer, ...watch } = this.#check('prepare', options);
     return this.#prepared(cloudsArgument(cloud, transfer), checkRecipe(steps), watch);
   }
 
-  /** @param {any} cloud @param {any} [options] */
+  /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
   async inspect(cloud, options) {
     const { transfer, ...watch } = this.#check('inspect', options);
     return this.#run({ call: 'inspect', args: [cloudArgument(cloud, transfer)] }, watch);
   }
 
-  /** @param {any} data @param {any} [options] */
+  /** @param {File | Blob | ArrayBuffer | Uint8Array} data @param {ReadOptions & CallOptions} [options] @returns {Promise<FileCloud>} */
   async read(data, options) {
     const { own, transfer, ...watch } = this.#check('read', options);
     const file = byteSourceOf(data, transfer);
-    const given = { name: data.name, ...own };
+    const given = { name: nameOf(data), ...own };
     return this.#queued(watch, async (signal) => {
       /** @type {import('../files/archive.js').Open} */
       const open = (build, job) => this.#withModule(build, signal, job).catch((error) => {
@@ -126,17 +147,18 @@ export class Engine {
     });
   }
 
-  /** @param {any} result @param {any} [options] */
+  /** @param {PointCloud | ReducedCloud | SurfaceMesh} result @param {WriteOptions & CallOptions} [options] @returns {Promise<Uint8Array>} */
   async write(result, options) {
     const { own, transfer, ...watch } = this.#check('write', options);
     const { meshopt, ...plain } = own;
     if (plain.up) plain.up = direction(plain.up);
     const compress = await compressorFor(meshopt);
+    /** @type {Uint8Array} */
     const bytes = await this.#runIn('exports', { call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
     return compress ? compress(bytes) : bytes;
   }
 
-  /** @param {any} model @param {any} [options] */
+  /** @param {Model} model @param {SampleOptions & CallOptions} [options] @returns {Promise<PointCloud<Float32Array>>} */
   async sample(model, options) {
     const { own, transfer, ...watch } = this.#check('sample', options);
     return this.#runIn('samples', { call: 'sample', args: [{ model: checkModel(model), ...own }] }, watch);
@@ -207,14 +229,15 @@ export class Engine {
    * @param {'reduce' | 'reconstruct'} call
    * @param {any} cloud
    * @param {unknown} options
+   * @returns {Promise<any>}
    */
   async #compute(call, cloud, options) {
     const { own: { prepare, ...own }, transfer, ...watch } = this.#check(call, options);
     const given = cloudArgument(cloud, transfer);
-    if (!prepare) return this.#run({ call, args: [given, own] }, watch);
+    if (!prepare) return this.#run({ call, args: [given, counted(own, given)] }, watch);
     const [first, second] = halves(watch);
     const prepared = await this.#prepared(given, prepare, first);
-    return ofAllPoints(await this.#run({ call, args: [prepared.cloud, own] }, second), prepared);
+    return ofAllPoints(await this.#run({ call, args: [prepared.cloud, counted(own, prepared.cloud)] }, second), prepared);
   }
 
   /**

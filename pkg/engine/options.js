@@ -3,11 +3,20 @@
  * table in Rust; here stand those that are the package's own.
  */
 import { AXES, UNITS, isDirection } from './axes.js';
-import { RECONSTRUCT, REDUCE } from './options-table.js';
+import * as TABLE from './options-table.js';
 import { RECIPE } from './preparing.js';
-import { badOption, checkTable, choice, defaultsOf, integer, isObject, number, rule, toggle } from './rules.js';
+import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
 
 /** @import { ReconstructOptions, ReduceOptions } from '../types.js' */
+
+const { target } = TABLE.REDUCE;
+const AUTO = 'auto';
+/** The package makes a count of `'auto'` (amount.js). */
+const REDUCE = {
+  ...TABLE.REDUCE,
+  target: { ...target, ...rule(`'${AUTO}' or ${target.expected}`, (value, path) => value === AUTO || target.accepts(value, path), target.fallback) },
+};
+const RECONSTRUCT = { ...TABLE.RECONSTRUCT, reduce: nested('reduce', REDUCE) };
 
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
@@ -48,7 +57,7 @@ export const ENGINE = {
   idleMs: rule('a number of at least 0', (value) => typeof value === 'number' && value >= 0),
   wasmUrl: rule(
     `the URL of the folder that holds ${BUILDS.join('/, ')}/, or an object { ${BUILDS.join(', ')} } of file URLs`,
-    (value) => isUrl(value) || (isObject(value) && Object.keys(value).every((key) => BUILDS.includes(key) && isUrl(value[key]))),
+    (value) => (isUrl(value) ? !isWasm(value) : isObject(value) && Object.keys(value).every((key) => BUILDS.includes(key) && isUrl(value[key]))),
   ),
 };
 
@@ -113,6 +122,11 @@ function checkCompression({ format = WRITE.format.fallback, quantize, meshopt })
   for (const [option, value] of Object.entries({ quantize, meshopt })) {
     if (value && format !== 'glb') throw badOption(option, "false, unless format is 'glb'", value);
   }
+}
+
+/** One file, where a folder is expected. @param {unknown} value */
+function isWasm(value) {
+  return /\.wasm([?#]|$)/.test(String(value));
 }
 
 /** @param {unknown} value */

@@ -45,8 +45,16 @@ function wasmFile(build, given) {
 /** @param {string} url */
 async function compileFrom(url) {
   try {
-    return await WebAssembly.compile(await readFile(new URL(url)));
+    return await WebAssembly.compile(await bytesAt(url));
   } catch (error) {
     throw new PointweaveError({ code: 'load-failed', message: `${url} did not load: ${error instanceof Error ? error.message : error}` });
   }
+}
+
+/** @param {string} url */
+async function bytesAt(url) {
+  if (!/^https?:/.test(url)) return readFile(new URL(url));
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
 }

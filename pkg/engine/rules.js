@@ -81,8 +81,10 @@ export const named = (each) =>
   );
 
 /** An object of options, or false for none. @param {string} what they are of @param {Table} table */
-export const nested = (what, table) =>
-  rule(`false or an object of ${what} options`, (value, path) => value === false || Boolean(checkTable(table, value, `${path}.`)), defaultsOf(table));
+export const nested = (what, table) => ({
+  ...rule(`false or an object of ${what} options`, (value, path) => value === false || Boolean(checkTable(table, value, `${path}.`)), defaultsOf(table)),
+  parts: table,
+});
 
 /** @param {Table} table @returns {Record<string, any>} */
 export function defaultsOf(table) {
@@ -121,14 +123,22 @@ export function badOption(option, expected, found) {
 /** @param {string} option @param {string} key @param {Table} table */
 function unknownOption(option, key, table) {
   const names = Object.keys(table);
-  const holder = names.find((name) => Object.hasOwn(table[name].parts ?? {}, key));
-  const hint = holder ? `${holder}: { ${key} }` : nearest(key, names);
+  const hint = within(table, key) ?? nearest(key, names);
   return new PointweaveError({
     code: 'bad-option',
     message: `there is no option ${option}${hint ? `: did you mean ${hint}?` : `: expected one of ${names.join(', ')}`}`,
     expected: hint ?? names,
     found: option,
   });
+}
+
+/** Where an option is that stands in another, as one writes it: `reduce: { target }`. @param {Table} table @param {string} key @returns {string | undefined} */
+function within(table, key) {
+  for (const [name, { parts }] of Object.entries(table)) {
+    if (!parts) continue;
+    const inner = Object.hasOwn(parts, key) ? key : within(parts, key);
+    if (inner) return `${name}: { ${inner} }`;
+  }
 }
 
 /** @param {unknown} value */

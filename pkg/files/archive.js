@@ -1,6 +1,6 @@
 /** A file that is a scan, or an archive of scans: these are read one after the other, and are one cloud. */
 import { PointweaveError } from '../engine/errors.js';
-import { finder, lastOf } from './beside.js';
+import { among, finder } from './beside.js';
 import { merged } from './merging.js';
 import { byteSourceOf } from './byte-source.js';
 import { readFile, readerOf } from './reading.js';
@@ -16,7 +16,7 @@ import { readFile, readerOf } from './reading.js';
  */
 
 /** Names of what may be a scan; text may be one where nothing else is. */
-const SCAN = /\.(ply|pcd|las|laz|e57|ptx|obj|off|stl|glb|xyz|pts|xyzn|xyzrgb|asc|tiff?|3mf|splat|spz)$/i;
+const SCAN = /\.(ply|pcd|las|laz|e57|ptx|obj|off|coff|noff|cnoff|stl|glb|xyz|pts|xyzn|xyzrgb|asc|grid|agr|grd|tif|tiff|3mf|splat|spz)$/i;
 const TEXT = /\.(txt|csv)$/i;
 /** What systems put beside. */
 const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
@@ -40,8 +40,8 @@ export async function readScan(open, file, { beside, ...options }, watch) {
     const unpack = (/** @type {number} */ part) => ask({ call: 'unpack', args: [part] });
     // What a mesh names is in the archive, too.
     const inside = async (/** @type {string} */ name) => {
-      const at = names.findIndex((other) => lastOf(other) === lastOf(name));
-      return at < 0 ? find(name) : unpack(at);
+      const found = among(names.map((other, part) => ({ name: other, part })), name);
+      return found ? unpack(found.part) : find(name);
     };
     const clouds = [];
     for (const [i, at] of chosen.entries()) {
@@ -109,7 +109,8 @@ function scansOf(names) {
 
 /** @param {string[]} names */
 function noScan(names) {
-  const found = names.length === 0 ? 'no file' : names.slice(0, 5).join(', ') + (names.length > 5 ? ' …' : '');
+  const isUsd = names.some((name) => /\.usd[ac]?$/i.test(name));
+  const found = isUsd ? 'a USD scene (USDZ)' : names.length === 0 ? 'no file' : names.slice(0, 5).join(', ') + (names.length > 5 ? ' …' : '');
   const expected = 'an archive with a scan in it';
   return new PointweaveError({ code: 'unsupported-file', message: `this archive cannot be read: it holds ${found}; expected a scan`, expected, found });
 }

@@ -10,9 +10,25 @@ import { PointweaveError } from '../engine/errors.js';
  */
 export function finder(beside) {
   return async (name) => {
-    const found = typeof beside === 'function' ? await beside(name) : beside?.find((file) => lastOf(file.name) === lastOf(name));
+    const found = typeof beside === 'function' ? await beside(name) : among(beside ?? [], name);
     return found && bytesOf(found, name);
   };
+}
+
+/**
+ * The file of a name; of a library that was renamed with its mesh the only one that there is.
+ * @template {{ name: string }} F
+ * @param {F[]} files
+ * @param {string} name
+ */
+export function among(files, name) {
+  const libraries = files.filter((file) => isLibrary(file.name));
+  return files.find((file) => lastOf(file.name) === lastOf(name)) ?? (isLibrary(name) && libraries.length === 1 ? libraries[0] : undefined);
+}
+
+/** @param {string} name */
+function isLibrary(name) {
+  return /\.mtl$/i.test(name);
 }
 
 /** What is behind the folders of a path, of either system's, in lower case. @param {string} path */

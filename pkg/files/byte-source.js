@@ -1,6 +1,6 @@
 /** Bytes that are read slice by slice: of a Blob, which may lie on a disk, or of the caller's array. */
 import { own } from '../engine/arrays.js';
-import { PointweaveError } from '../engine/errors.js';
+import { badInput, expectAttached } from '../engine/inputs.js';
 
 /** Slice size: small against large files, large enough that per-call overhead does not show. */
 const SLICE = 4 << 20;
@@ -27,11 +27,15 @@ export function byteSourceOf(data, transfer) {
   return { size: bytes.length, read: async (at) => (at === 0 ? first : bytes.slice(at, at + SLICE)) };
 }
 
+/** Of a `File`. @param {unknown} data @returns {string | undefined} */
+export function nameOf(data) {
+  return typeof File !== 'undefined' && data instanceof File ? data.name : undefined;
+}
+
 /** @param {unknown} data */
 function viewOf(data) {
-  if (data instanceof ArrayBuffer) return new Uint8Array(data);
-  if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-  const kind = data === null ? 'null' : typeof data === 'object' ? data.constructor?.name ?? 'object' : typeof data;
-  const expected = 'a File, Blob, ArrayBuffer or Uint8Array';
-  throw new PointweaveError({ code: 'bad-input', message: `data is of type ${kind}: expected ${expected}`, expected, found: kind });
+  const view = ArrayBuffer.isView(data);
+  if (!view && !(data instanceof ArrayBuffer)) throw badInput('data', 'a File, Blob, ArrayBuffer or Uint8Array', data);
+  expectAttached('data', view ? data.buffer : data);
+  return view ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength) : new Uint8Array(data);
 }

@@ -8,7 +8,7 @@ import { badInput, expectArray } from '../engine/inputs.js';
 export function expectDrawable(what) {
   if (typeof what !== 'object' || what === null) throw badInput('what is shown', 'a cloud, a mesh, or a GLB that was read', what);
   const { positions, normals, colors, indices } = what;
-  if (!(positions instanceof Float64Array)) expectArray('positions', positions, Float32Array, 'a Float32Array or Float64Array');
+  expectArray('positions', positions, Float32Array, Float64Array);
   if (positions.length === 0) throw new PointweaveError({ code: 'empty-cloud', message: 'there are no points to show' });
   const { length } = positions;
   expectLength('positions', length, length - (length % 3));

@@ -21,6 +21,9 @@ const WHEEL_UNITS = [1, 16, 100];
 
 export class Gestures {
   enabled = false;
+  /** Whether it comes nearer, and moves aside. */
+  zooms = true;
+  pans = true;
   #element;
   #hands;
   #embedded;
@@ -51,8 +54,8 @@ export class Gestures {
   #take = (event) => {
     if (!this.enabled || this.#held.size === 2) return;
     const { pointerId, pointerType, button, ctrlKey, metaKey, shiftKey } = event;
-    const other = pointerType !== 'touch' && (button === 2 || ctrlKey || metaKey || shiftKey);
-    this.#grip = other ? 'shift' : button === 1 ? 'pinch' : 'drag';
+    const other = this.pans && pointerType !== 'touch' && (button === 2 || ctrlKey || metaKey || shiftKey);
+    this.#grip = other ? 'shift' : button === 1 && this.zooms ? 'pinch' : 'drag';
     this.#element.setPointerCapture(pointerId);
     this.#held.set(pointerId, pointOf(event));
     this.#hands.begin();
@@ -66,8 +69,8 @@ export class Gestures {
     const now = this.#grasp;
     const [x, y] = [now.x - before.x, now.y - before.y].map((way) => way / this.#element.clientHeight);
     if (this.#held.size === 2) {
-      this.#hands.shift(x, y);
-      if (before.spread && now.spread) this.#hands.pinch(before.spread / now.spread);
+      if (this.pans) this.#hands.shift(x, y);
+      if (this.zooms && before.spread && now.spread) this.#hands.pinch(before.spread / now.spread);
     } else if (this.#grip === 'pinch') this.#hands.pinch(factor(now.y - before.y));
     else this.#hands[this.#grip](x, y);
   };
@@ -79,7 +82,7 @@ export class Gestures {
   #wheel = (event) => {
     const { deltaY, deltaMode, ctrlKey } = event;
     const { activeElement } = /** @type {Document | ShadowRoot} */ (this.#element.getRootNode());
-    if (!this.enabled || (this.#embedded && !ctrlKey && activeElement !== this.#element)) return;
+    if (!this.enabled || !this.zooms || (this.#embedded && !ctrlKey && activeElement !== this.#element)) return;
     event.preventDefault();
     const way = deltaY * WHEEL_UNITS[deltaMode];
     this.#hands.begin();

@@ -13,7 +13,7 @@ const JSON_CHUNK = 0x4e4f534a;
 
 /**
  * A GLB that can be shown: its scene in the frame, its objects by layer, and a few of its vertices.
- * @typedef {{ scene: Group, layers: Record<string, (Points | Mesh)[]>, outline: Float32Array }} Parts
+ * @typedef {{ frame: import('../viewer.js').Frame, scene: Group, layers: Record<string, (Points | Mesh)[]>, outline: Float32Array }} Parts
  */
 
 /** Enough vertices to know how large something looks. */
@@ -38,7 +38,11 @@ export async function readGlb(bytes) {
   const gltf = await loader.parseAsync(bufferOf(bytes), '').catch((error) => {
     throw badFile(error instanceof Error ? error.message : String(error));
   });
-  return dressed(gltf.scene);
+  const { associations, json } = gltf.parser;
+  return dressed(gltf.scene, (mesh) => {
+    const { meshes = -1, primitives = 0 } = associations.get(mesh) ?? {};
+    return json.meshes?.[meshes]?.primitives[primitives]?.material === undefined;
+  });
 }
 
 /**
@@ -58,11 +62,16 @@ function header(bytes) {
   }
 }
 
-/** Moves the scene into the frame and gives its objects our materials. @param {Group} scene */
-function dressed(scene) {
+/**
+ * Moves the scene into the frame, and gives its points and what has no material ours.
+ * @param {Group} scene
+ * @param {(mesh: Mesh) => boolean} isBare whether the file gives it no material
+ */
+function dressed(scene, isBare) {
   const box = new Box3().setFromObject(scene, true);
   if (box.isEmpty()) throw new PointweaveError({ code: 'empty-cloud', message: 'the GLB holds nothing to show' });
-  const { center, diagonal } = frameBetween(box.min.toArray(), box.max.toArray());
+  const frame = frameBetween(box.min.toArray(), box.max.toArray());
+  const { center, diagonal } = frame;
   const placed = new Group().add(scene);
   placed.scale.setScalar(1 / diagonal);
   placed.position.fromArray(center).multiplyScalar(-1 / diagonal);
@@ -73,11 +82,12 @@ function dressed(scene) {
   const mesh = [];
   scene.traverse((object) => {
     if (object instanceof Points) points.push(dressPoints(object));
-    else if (object instanceof Mesh) mesh.push(dressMesh(object));
+    else if (object instanceof Mesh) mesh.push(dressMesh(object, isBare(object)));
   });
   const objects = [...points, ...mesh];
   return {
     kind: /** @type {const} */ ('glb'),
+    frame,
     scene: placed,
     layers: { ...(points.length && { points }), ...(mesh.length && { mesh }) },
     outline: joined(objects.map((object) => placedPositions(object, OUTLINE / objects.length))),
@@ -93,13 +103,21 @@ function dressPoints(points) {
   return points;
 }
 
-/** Unlit materials stay as they are: their colours hold their own light. @param {Mesh} mesh */
-function dressMesh(mesh) {
+/**
+ * Materials stay as the file has them. What has none gets the studio's light and the theme's colour, and plain white the colour that
+ * a page asks for.
+ * @param {Mesh} mesh
+ * @param {boolean} bare
+ */
+function dressMesh(mesh, bare) {
   if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
   const own = /** @type {import('three').MeshStandardMaterial} */ (mesh.material);
-  if (own.type === 'MeshBasicMaterial') return mesh;
-  const { map, color, vertexColors, opacity, transparent, alphaTest } = own;
-  mesh.material = meshMaterial({ map, color, vertexColors, opacity, transparent, alphaTest });
+  if (own.type === 'MeshBasicMaterial') own.toneMapped = false; // unlit: its colours hold their own light
+  else if (bare) {
+    const { vertexColors } = own;
+    mesh.material = meshMaterial({ vertexColors });
+    mesh.userData.themed = !vertexColors;
+  } else if (!own.map && !own.vertexColors && own.color.getHex() === 0xffffff) mesh.userData.plain = true;
   return mesh;
 }
 

@@ -1,5 +1,5 @@
 /** Scans and meshes as things to draw, one draw call each. */
-import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points, SRGBColorSpace } from 'three';
+import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points, SRGBColorSpace, Sphere, Texture } from 'three';
 import { typicalSpacing } from './density.js';
 import { toFrame } from './frame.js';
 import { boxMaterial, edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
@@ -74,9 +74,15 @@ export function paint(layer, colors, measured) {
   material.needsUpdate = true;
 }
 
-/** What has no colours of its own gets the theme's. @param {any} layer @param {Rgb} color */
-export function tint({ material, userData }, color) {
-  if (material.uniforms) material.uniforms.tint.value.setRGB(...color);
+/**
+ * What has no colours of its own gets the theme's; white of a GLB, what a page asks for.
+ * @param {any} layer
+ * @param {Rgb} color
+ * @param {Rgb} [plain]
+ */
+export function tint({ material, userData }, color, plain) {
+  if (userData.plain && plain) material.color.setRGB(...plain, SRGBColorSpace);
+  else if (material.uniforms) material.uniforms.tint.value.setRGB(...color);
   else if (userData.themed) material.color.setRGB(...color, SRGBColorSpace);
   else if (userData.themed === false) material.color.setRGB(1, 1, 1);
 }
@@ -129,10 +135,11 @@ function lines(position, indices, material) {
 
 /** What an object holds on the GPU. three.js makes it anew should the object be drawn again. @param {import('three').Object3D} object */
 export function free(object) {
-  const { geometry, material } = /** @type {Mesh<BufferGeometry, import('three').MeshMatcapMaterial>} */ (object);
+  const { geometry, material } = /** @type {Mesh} */ (object);
   geometry.dispose();
-  material.map?.dispose();
-  material.dispose();
+  const { matcap, ...maps } = /** @type {Record<string, any>} */ (material); // the matcap is the page's
+  for (const value of Object.values(maps)) if (value instanceof Texture) value.dispose();
+  /** @type {import('three').Material} */ (material).dispose();
 }
 
 /**
@@ -150,6 +157,8 @@ function geometryOf(source, frame) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(toFrame(source, frame), 3));
   if (source.normals) geometry.setAttribute('normal', new BufferAttribute(source.normals, 3));
+  // The frame's ball: three.js would pass over all points for a smaller one.
+  geometry.boundingSphere = new Sphere(undefined, 0.5);
   return geometry;
 }
 

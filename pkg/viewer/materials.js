@@ -12,7 +12,7 @@ import { studioMatcap } from './matcap.js';
  */
 export function meshMaterial(look) {
   const material = new MeshMatcapMaterial({
-    ...look, matcap: studioMatcap(), side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    ...look, matcap: studioMatcap(), toneMapped: false, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   });
   const measured = { value: 0 };
   material.userData.measured = measured;
@@ -38,12 +38,12 @@ export function meshMaterial(look) {
 
 /** Edges of triangles, thin over the surface. */
 export function edgeMaterial() {
-  return new LineBasicMaterial({ transparent: true, opacity: 0.42, depthWrite: false });
+  return new LineBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.42, depthWrite: false });
 }
 
 /** Boxes: opaque, as the depth pass of the clouds wants it. */
 export function boxMaterial() {
-  return new LineBasicMaterial();
+  return new LineBasicMaterial({ toneMapped: false });
 }
 
 /**
@@ -64,6 +64,7 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
     uniforms: {
       tint: { value: new Color() },
       diameter: { value: diameter },
+      scale: { value: 1 },
       pixelsPerUnit: { value: 1 },
       smallest: { value: 1 },
       distance: { value: 1 },
@@ -71,7 +72,7 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
     },
     vertexShader: /* glsl */ `
       uniform vec3 tint;
-      uniform float diameter, pixelsPerUnit, smallest, distance, measured;
+      uniform float diameter, scale, pixelsPerUnit, smallest, distance, measured;
       varying vec3 shown;
       varying float near;
       #ifdef COLORED
@@ -81,7 +82,7 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
         vec4 eye = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * eye;
         bool parallel = projectionMatrix[3][3] == 1.0;
-        gl_PointSize = clamp(diameter * pixelsPerUnit / (parallel ? distance : -eye.z), smallest, 96.0);
+        gl_PointSize = scale * clamp(diameter * pixelsPerUnit / (parallel ? distance : -eye.z), smallest, 96.0);
         #ifdef COLORED
           shown = color;
           #ifdef LINEAR

@@ -1,18 +1,17 @@
 /** How one moves around: gestures, calls, a slow turn of its own, straight looks at the sides, and back to the first look. */
 import { MathUtils, Quaternion, Spherical, Vector3 } from 'three';
 import { Gestures } from './gestures.js';
+import { boundsOf, lookOf, reached, within } from './look.js';
 import { calm } from './watching.js';
 
 /** @import { Axis, Mover, Pose, Side } from '../viewer.js' */
 
-/** First look: from the front, a little from the right and above. */
-const FIRST_LOOK = new Vector3(0.55, 0.38, 1).normalize();
 const MARGIN = 1.1;
 const NEAREST = 0.02;
-const FARTHEST = 12;
 const FLIGHT_MS = 420;
-/** A slow turn: once around in half a minute; it rests a while after a hand was on it. */
+/** A slow turn: once around in half a minute. */
 const TURN_PER_MS = (2 * Math.PI) / 30_000;
+/** It rests a while after a hand was on it. */
 const REST_MS = 3000;
 /** What a pointer has moved is followed by this share a millisecond (a twentieth a frame), so that it glides to rest. */
 const FOLLOW = -Math.log(0.95) / (1000 / 60);
@@ -41,7 +40,7 @@ const SIDES = {
   bottom: [0, Math.PI - 1e-4],
 };
 
-/** A move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, start: number, by: Mover }} Flight */
+/** A move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, goal: Vector3, start: number, by: Mover }} Flight */
 
 export class Orbit {
   #camera;
@@ -58,6 +57,14 @@ export class Orbit {
   #outline = /** @type {Float32Array} */ (new Float32Array());
   /** Where the camera was put so that all is seen. */
   #fitted = new Spherical();
+  /** How far that is, once the picture has another shape. @type {(place: Spherical) => number} */
+  #measure = (place) => this.#distanceFrom(place);
+  /** From where all was seen at last. */
+  #whole = 1;
+  #first = lookOf({}, null);
+  #bounds = boundsOf({}, null);
+  /** Milliseconds that it rests after a hand was on it. */
+  rest = REST_MS;
   /** Nobody has moved since something new came. */
   #untouched = true;
   /** @type {Flight | null} */
@@ -86,7 +93,31 @@ export class Orbit {
       shift: (x, y) => this.#follow({ x, y }),
       pinch: (factor) => this.zoom(factor, 'pointer'),
     }, embedded);
-    camera.position.copy(FIRST_LOOK).multiplyScalar(2);
+    camera.position.setFromSphericalCoords(2, this.#first.phi, this.#first.theta);
+  }
+
+  /** What the pointer may do besides turning. @param {{ zoom: boolean, pan: boolean }} allowed */
+  allow({ zoom, pan }) {
+    Object.assign(this.#gestures, { zooms: zoom, pans: pan });
+  }
+
+  /**
+   * Where home is, and how far one may go from it.
+   * @param {import('../viewer.js').FirstLook} first
+   * @param {import('../viewer.js').Limits} limits
+   * @param {import('../viewer.js').Frame | null} frame
+   */
+  settle(first, limits, frame) {
+    this.#first = lookOf(first, frame);
+    this.#bounds = boundsOf(limits, frame);
+    this.#camera.fov = within(this.#first.fov, this.#bounds.fov);
+    this.#changed('program');
+  }
+
+  /** Where the camera stands, and what it turns around, in the frame. */
+  get stance() {
+    const { theta, phi, radius } = this.#place;
+    return { theta, phi, radius, target: this.#target.clone().applyQuaternion(this.#root.quaternion.clone().invert()) };
   }
 
   /** Listens to the pointer, or no longer. @param {boolean} on */
@@ -150,7 +181,9 @@ export class Orbit {
 
   /** Back to the first look, from which everything is seen. */
   home({ animated = true, by = /** @type {Mover} */ ('program') } = {}) {
-    this.#fit(new Spherical().setFromVector3(FIRST_LOOK), animated, by);
+    const { theta, phi, reach, target } = this.#first;
+    const goal = new Vector3(...target).applyQuaternion(this.#root.quaternion);
+    this.#fit(new Spherical(1, phi, theta), animated, by, goal, (place) => reached(reach, this.#distanceFrom(place)));
   }
 
   /** Along the line of sight to where everything is seen, centred. */
@@ -169,7 +202,8 @@ export class Orbit {
   /** There is something else to look at. What would be cut off is fitted in, unless somebody has looked around. @param {Float32Array} outline */
   widen(outline) {
     this.#outline = outline;
-    if (this.#untouched && this.#distanceFrom(this.#place) > MARGIN * this.distance) this.fit({ animated: false });
+    if (!this.#untouched || this.#measure(this.#place) <= MARGIN * this.distance) return;
+    this.#fit(this.#place, false, 'program', this.#target.clone(), this.#measure);
   }
 
   /** The picture has another shape now. Fits again, unless somebody has come nearer or gone farther. @param {() => void} reshape */
@@ -177,7 +211,8 @@ export class Orbit {
     const place = this.#place;
     const fitted = Math.abs(place.radius - this.#fitted.radius) < 1e-6;
     reshape();
-    this.#fitted.radius = this.#distanceFrom(this.#fitted);
+    this.#whole = this.#distanceFrom(this.#fitted);
+    this.#fitted.radius = this.#measure(this.#fitted);
     if (!fitted) return;
     place.radius = this.#fitted.radius;
     this.#put(place, this.#target);
@@ -188,7 +223,7 @@ export class Orbit {
     this.#rest();
     const place = this.#place;
     place.theta += right;
-    place.phi = upTo(place.phi - over);
+    place.phi -= over;
     this.#put(place, this.#target, by);
   }
 
@@ -196,7 +231,7 @@ export class Orbit {
   zoom(factor, by) {
     if (by !== 'pointer') this.#rest(); // who holds it has made it rest
     const place = this.#place;
-    place.radius = MathUtils.clamp(place.radius * factor, NEAREST, FARTHEST);
+    place.radius *= factor;
     this.#put(place, this.#target, by);
   }
 
@@ -236,7 +271,7 @@ export class Orbit {
     const height = 2 * place.radius * Math.tan(MathUtils.degToRad(this.#camera.fov) / 2);
     const move = new Vector3(-x, y, 0).multiplyScalar(share * height).applyQuaternion(this.#camera.quaternion);
     place.theta += share * right;
-    place.phi = upTo(place.phi + share * over);
+    place.phi += share * over;
     const left = 1 - share;
     this.#lag = left ? { right: left * right, over: left * over, x: left * x, y: left * y } : NO_LAG;
     this.#put(place, move.add(this.#target), 'pointer');
@@ -249,28 +284,37 @@ export class Orbit {
     this.#put(place, this.#target);
   }
 
-  /** Moves the camera to where everything is seen from there. @param {Spherical} to @param {boolean} animated @param {Mover} [by] */
-  #fit(to, animated, by = 'program') {
-    to.radius = this.#distanceFrom(to);
+  /**
+   * Moves the camera to where everything is seen from there, or as far as is measured.
+   * @param {Spherical} to
+   * @param {boolean} animated
+   * @param {Mover} by
+   * @param {Vector3} goal what it looks at
+   * @param {(place: Spherical) => number} measure
+   */
+  #fit(to, animated, by = 'program', goal = new Vector3(), measure = (place) => this.#distanceFrom(place)) {
+    this.#measure = measure;
+    this.#whole = this.#distanceFrom(to);
+    to.radius = measure(to);
     this.#fitted = to.clone();
     this.#flight = null;
     this.#lag = NO_LAG;
-    if (!animated || calm().wanted) return this.#put(to, new Vector3(), by);
-    this.#restUntil = performance.now() + REST_MS;
+    if (!animated || calm().wanted) return this.#put(to, goal, by);
+    this.#restUntil = performance.now() + this.rest;
     const from = this.#place;
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI)); // the short way
-    this.#flight = { from, to, target: this.#target.clone(), start: performance.now(), by };
+    this.#flight = { from, to, target: this.#target.clone(), goal, start: performance.now(), by };
     this.#changed(by);
   }
 
   /** @param {Flight} flight */
-  #fly({ from, to, target, start, by }) {
+  #fly({ from, to, target, goal, start, by }) {
     const t = Math.min(1, (performance.now() - start) / FLIGHT_MS);
     const eased = 1 - (1 - t) ** 3;
     const between = (/** @type {'radius' | 'phi' | 'theta'} */ part) => MathUtils.lerp(from[part], to[part], eased);
     const place = new Spherical(between('radius'), between('phi'), between('theta'));
     if (t === 1) this.#flight = null;
-    this.#put(place, target.clone().multiplyScalar(1 - eased), by);
+    this.#put(place, target.clone().lerp(goal, eased), by);
   }
 
   /** A hand is on it: what moves by itself rests. */
@@ -278,7 +322,7 @@ export class Orbit {
     this.#flight = null;
     this.#lag = NO_LAG;
     this.#untouched = false;
-    this.#restUntil = performance.now() + REST_MS;
+    this.#restUntil = performance.now() + this.rest;
   }
 
   get #place() {
@@ -287,6 +331,10 @@ export class Orbit {
 
   /** @param {Spherical} place @param {Vector3} target @param {Mover} [by] */
   #put(place, target, by = 'program') {
+    const { theta, phi, near, far } = this.#bounds;
+    place.theta = within(place.theta, theta);
+    place.phi = within(place.phi, phi);
+    place.radius = within(place.radius, [reached(near, this.#whole), reached(far, this.#whole)]);
     this.#target.copy(target);
     this.#camera.position.setFromSpherical(place).add(target);
     this.#camera.lookAt(target);
@@ -321,11 +369,6 @@ export class Orbit {
     }
     return distance;
   }
-}
-
-/** Not over the poles. @param {number} phi */
-function upTo(phi) {
-  return MathUtils.clamp(phi, 0.01, Math.PI - 0.01);
 }
 
 /**

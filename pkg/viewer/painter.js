@@ -2,9 +2,10 @@
  * The one WebGL renderer of a page. Browsers give a page few contexts, so all viewers share this one: it draws a picture in its own
  * hidden canvas, and copies it to the viewer's. What a viewer shows stays while the context is lost.
  */
-import { WebGLRenderer } from 'three';
+import { LinearToneMapping, REVISION, WebGLRenderer } from 'three';
 import { PointweaveError } from '../engine/errors.js';
 import { EyeDome } from './eye-dome.js';
+import { Lights } from './light.js';
 
 /**
  * What can be painted.
@@ -16,6 +17,9 @@ import { EyeDome } from './eye-dome.js';
  * @property {import('three').Scene} scene
  * @property {import('three').PerspectiveCamera} camera
  * @property {CanvasRenderingContext2D} context where it goes
+ * @property {object | 'neutral'} surroundings what lights it: a texture, or the studio
+ * @property {number} exposure of materials that are lit; 1 as it is
+ * @property {(renderer: WebGLRenderer) => void} readied what has to be drawn elsewhere before: its shadow
  * @property {(layer: string) => number} prepare readies scene and camera for a layer; how strong its depth pass is, 0 for none
  * @property {(now: number) => void} frame moves on to the next frame, and has it painted
  * @property {(lost: boolean) => void} contextChanged the browser has taken WebGL away, or has given it back
@@ -26,10 +30,14 @@ import { EyeDome } from './eye-dome.js';
 
 const LOOK = /** @type {const} */ ({ alpha: true, antialias: true, depth: true, stencil: false, premultipliedAlpha: true });
 
+/** The Khronos group's neutral mapping, which keeps the colours of goods; three.js 0.162 or newer has it, by this number. */
+const TONE_MAPPING = Number(REVISION) >= 162 ? /** @type {import('three').ToneMapping} */ (7) : LinearToneMapping;
+
 class Painter {
   #canvas = document.createElement('canvas');
   #renderer;
   #eyeDome = new EyeDome();
+  #lights;
   /** All that are in the page. @type {Set<Picture>} */
   #pictures = new Set();
   /** Those that want a new frame. @type {Set<Picture>} */
@@ -41,9 +49,12 @@ class Painter {
     this.#renderer = new WebGLRenderer({ ...LOOK, canvas: this.#canvas, context });
     this.#renderer.autoClear = false;
     this.#renderer.setPixelRatio(1);
+    this.#renderer.toneMapping = TONE_MAPPING;
+    this.#lights = new Lights(this.#renderer);
     this.#clear();
     this.#canvas.addEventListener('webglcontextlost', () => this.#tell(true));
     this.#canvas.addEventListener('webglcontextrestored', () => {
+      this.#lights.forget();
       this.#clear();
       this.#tell(false);
     });
@@ -91,6 +102,9 @@ class Painter {
     const { width, height, scene, camera, context } = picture;
     if (!width || !height || this.#renderer.getContext().isContextLost()) return;
     this.#grow(width, height);
+    scene.environment = this.#lights.of(/** @type {import('three').Texture | 'neutral'} */ (picture.surroundings));
+    this.#renderer.toneMappingExposure = picture.exposure;
+    picture.readied(this.#renderer);
     this.#renderer.setViewport(0, 0, width, height);
     this.#renderer.setScissorTest(true);
     for (const { layer, from, to } of picture.sides) {
@@ -105,6 +119,11 @@ class Painter {
     }
     context.globalCompositeOperation = 'copy';
     context.drawImage(this.#canvas, 0, this.#canvas.height - height, width, height, 0, 0, width, height);
+  }
+
+  /** Nobody shows it any more. @param {import('three').Texture} surroundings */
+  drop(surroundings) {
+    this.#lights.drop(surroundings);
   }
 
   /** @param {number} width @param {number} height */

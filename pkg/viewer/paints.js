@@ -66,7 +66,8 @@ const PAINTERS = {
       mesh: () => filled(distances.vertices, mesh.indices),
     }[layer]();
     // One scale for all layers; the few points beyond it take its end.
-    const high = Math.max(quantile(distances.points, 0.99), 1e-9);
+    const others = subject.beside?.distances?.points;
+    const high = Math.max(quantile(distances.points, 0.99), others ? quantile(others, 0.99) : 0, 1e-9);
     const words = (/** @type {number} */ share) => `${length(share * diagonal)}\n${percent(share)}`;
     const bare = layer === 'mesh' && values.some(Number.isNaN) ? error.unknown : '';
     return { colors: colorize(values, 0, high), legend: { title: error.titles[layer], note: noteOf(error.note, subject) + bare, low: 0, high, words } };

@@ -14,8 +14,8 @@ const ROUNDS = 3;
 const ray = new Raycaster();
 
 /**
- * The nearest triangle of a layer: its index, counted through the layer's objects, and the direction of the plane around it that
- * looks at the camera, in the coordinates of the data. `null` where there is none.
+ * The nearest triangle of a layer: its index, counted through the layer's objects, where it is hit, before the camera, and the direction
+ * of the plane around it that looks at the camera, in the coordinates of the data. `null` where there is none.
  * @param {Layer} layer
  * @param {PerspectiveCamera} camera which may have the projection of another kind
  * @param {number} x from -1 at the left of the picture to 1
@@ -33,7 +33,7 @@ export function triangleAt({ bit, objects }, camera, x, y) {
   const { geometry, matrixWorld } = meshes[at];
   const plane = planeAround(geometry, Number(hit.faceIndex));
   if (plane.clone().transformDirection(matrixWorld).dot(ray.ray.direction) > 0) plane.negate();
-  return { triangle: before + Number(hit.faceIndex), normal: /** @type {[number, number, number]} */ (plane.toArray()) };
+  return { triangle: before + Number(hit.faceIndex), point: hit.point, normal: /** @type {[number, number, number]} */ (plane.toArray()) };
 }
 
 /** The mean direction, by area, of the faces near one that stand as it does. @param {BufferGeometry} geometry @param {number} face */

@@ -88,7 +88,8 @@ export class Stage {
 
   /** @param {string} name @param {Paint} how */
   paint(name, { colors, legend }) {
-    for (const object of this.layers.get(name)?.objects ?? []) paint(object, colors, Boolean(legend));
+    const painted = this.layers.get(name)?.objects.filter(({ userData }) => 'themed' in userData) ?? [];
+    for (const object of painted) paint(object, colors, Boolean(legend));
     this.#tint();
   }
 
@@ -134,11 +135,11 @@ export class Stage {
 
   /** What has no colours of its own gets ours. */
   #tint() {
-    const { mesh, points, edges, boxes } = this.#colors;
+    const { mesh, points, edges, boxes, plain = '#ffffff' } = this.#colors;
     const own = /** @type {Record<string, string>} */ (/** @type {unknown} */ (this.#colors));
     for (const [name, layer] of this.layers) {
       const color = rgb(own[name] ?? (layer.points ? points : mesh));
-      for (const object of layer.objects) tint(object, color);
+      for (const object of layer.objects) tint(object, color, rgb(plain));
     }
     this.#edges.forEach((object) => tint(object, rgb(edges)));
     if (this.#boxes) tint(this.#boxes, rgb(boxes));

@@ -1,10 +1,12 @@
 /** A viewer: a canvas, what it shows, and how one moves around that. */
-import { PerspectiveCamera, Scene } from 'three';
+import { Scene, Vector3 } from 'three';
 import { contextOf, expectDrawable } from './checks.js';
 import { COLORS } from './colors.js';
 import { frameOf } from './frame.js';
+import { Ground } from './ground.js';
 import { MOVES, listenToKeys } from './keyboard.js';
-import { Orbit } from './orbit.js';
+import { NEUTRAL } from './light.js';
+import { Moved } from './moved.js';
 import { sharedPainter } from './painter.js';
 import { triangleAt } from './pick.js';
 import { Size } from './size.js';
@@ -23,9 +25,6 @@ const MEASURED_DOME = 0.3;
 const FREE = 0.6;
 const NO_INSETS = { top: 0, right: 0, bottom: 0, left: 0 };
 
-/** The frame of what comes in it. @type {Frame} */
-const ITSELF = { center: [0, 0, 0], size: [1, 1, 1], diagonal: 1 };
-
 /** @param {HTMLCanvasElement} canvas @param {ViewerOptions} [options] @returns {Viewer} */
 export function createViewer(canvas, options) {
   return new CanvasViewer(canvas, options);
@@ -36,22 +35,22 @@ function isModel(what) {
   return typeof what === 'object' && what !== null && 'kind' in what;
 }
 
-class CanvasViewer extends EventTarget {
+class CanvasViewer extends Moved {
   width = 0;
   height = 0;
   ratio = 1;
   scene = new Scene();
-  camera = new PerspectiveCamera(32, 1, 0.01, 10);
   context;
   /** @type {import('./painter.js').Side[]} */
   sides = [];
   #canvas;
   #painter = sharedPainter();
   #stage;
-  #orbit;
   #size;
-  /** @type {Frame | null} */
-  #frame = null;
+  #ground = new Ground();
+  /** @type {import('three').Texture | typeof NEUTRAL} */
+  #surroundings = /** @type {typeof NEUTRAL} */ (NEUTRAL);
+  #exposure = 1;
   /** Of what was shown first: what says which way is up. @type {Pick<Drawable, 'up' | 'seenFromAbove' | 'origin'>} */
   #first = {};
   /** @type {string | Split} */
@@ -62,20 +61,22 @@ class CanvasViewer extends EventTarget {
   #insets = NO_INSETS;
   #seen = true;
   #awake = false;
+  #pointSize = 1;
   /** Who has moved since the last frame. @type {Mover | null} */
   #moved = null;
 
   /** @param {HTMLCanvasElement} canvas @param {ViewerOptions} [options] */
   constructor(canvas, { interactive = true, keys = true, embedded = true, autoRotate = false, up = 'auto', colors = {}, insets = {} } = {}) {
-    super();
-    this.#canvas = canvas;
-    this.context = contextOf(canvas);
-    this.#stage = new Stage({ ...COLORS, ...colors });
-    this.scene.add(this.#stage.root);
-    this.#orbit = new Orbit(this.camera, this.#stage.root, canvas, embedded, (by) => {
+    const context = contextOf(canvas);
+    const stage = new Stage({ ...COLORS, ...colors });
+    super(stage.root, canvas, embedded, (by) => {
       this.#moved = by;
       this.#ask();
     });
+    this.#canvas = canvas;
+    this.context = context;
+    this.#stage = stage;
+    this.scene.add(stage.root, this.#ground.plane);
     this.#size = new Size(canvas, (size) => this.#resize(size));
     this.#up = up;
     this.#insets = { ...NO_INSETS, ...insets };
@@ -85,11 +86,11 @@ class CanvasViewer extends EventTarget {
       if (interactive && !canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
       /** @type {import('./keyboard.js').Hands} */
       const hands = {
-        turn: (right, over) => this.#orbit.turn(right, over, 'keys'),
-        zoom: (factor) => this.#orbit.zoom(factor, 'keys'),
-        home: () => this.#orbit.home({ by: 'keys' }),
+        turn: (right, over) => this.orbit.turn(right, over, 'keys'),
+        zoom: (factor) => this.orbit.zoom(factor, 'keys'),
+        home: () => this.orbit.home({ by: 'keys' }),
       };
-      listenToKeys(canvas, MOVES, () => (this.interactive && this.#frame ? hands : undefined));
+      listenToKeys(canvas, MOVES, () => (this.interactive && this.box ? hands : undefined));
     }
     this.resume();
   }
@@ -100,33 +101,37 @@ class CanvasViewer extends EventTarget {
     if (!model) expectDrawable(what);
     this.clear();
     if (model) {
-      const { scene, layers, outline } = /** @type {Model & Parts} */ (what);
-      this.#frame = ITSELF;
-      this.#first = {};
+      const { scene, layers, outline, frame: own } = /** @type {Model & Parts} */ (what);
+      this.box = own;
+      this.#first = { up: [0, 1, 0] };
+      this.settle();
       this.#stage.root.add(scene);
       Object.entries(layers).forEach(([name, objects], i) => this.#stage.add(name, objects, i ? new Float32Array() : outline));
       this.#view = 'mesh' in layers ? 'mesh' : 'points';
       this.#divide();
-      this.#orbit.frame(outline, this.#standing);
+      this.orbit.frame(outline, this.#standing);
+      this.#ground.stale();
     } else {
-      this.#frame = frame ?? null;
+      this.box = frame ?? null;
       this.set(what.indices ? 'mesh' : 'points', what);
     }
   }
 
   /** Replaces a layer, or removes it. The first of all is shown. @param {string} name @param {Drawable | null} what */
   set(name, what) {
-    if (!what && !this.#frame) return;
+    if (!what && !this.box) return;
     if (what) expectDrawable(what);
     const first = this.#stage.layers.size === 0;
-    this.#frame ??= frameOf(/** @type {Drawable} */ (what));
-    this.#stage.set(name, what, this.#frame);
+    this.box ??= frameOf(/** @type {Drawable} */ (what));
+    this.#stage.set(name, what, this.box);
+    this.#ground.stale();
     if (what && first) {
       const { up, seenFromAbove, origin } = what;
       this.#first = { up, seenFromAbove, origin };
-      this.#orbit.frame(this.#stage.outline, this.#standing);
+      this.settle();
+      this.orbit.frame(this.#stage.outline, this.#standing);
       this.view = name;
-    } else this.#orbit.widen(this.#stage.outline);
+    } else this.orbit.widen(this.#stage.outline);
     this.#ask();
   }
 
@@ -175,8 +180,8 @@ class CanvasViewer extends EventTarget {
 
   /** @param {Placed | null} corners the lowest and the highest of each box */
   showBoxes(corners) {
-    if (!this.#frame) return;
-    this.#stage.showBoxes(corners, this.#frame);
+    if (!this.box) return;
+    this.#stage.showBoxes(corners, this.box);
     this.#ask();
   }
 
@@ -208,13 +213,14 @@ class CanvasViewer extends EventTarget {
 
   set up(up) {
     this.#up = up;
-    if (!this.#frame) return;
-    this.#orbit.stand(this.#standing);
-    this.#orbit.fit();
+    if (!this.box) return;
+    this.orbit.stand(this.#standing);
+    this.#ground.stale();
+    this.orbit.fit();
   }
 
   get upright() {
-    if (this.#up === 'auto') return likelyUp(this.#first, this.#frame?.size ?? [1, 1, 1]);
+    if (this.#up === 'auto') return likelyUp(this.#first, this.box?.size ?? [1, 1, 1]);
     return typeof this.#up === 'string' ? this.#up : nearestAxis(this.#up);
   }
 
@@ -224,55 +230,13 @@ class CanvasViewer extends EventTarget {
     return Array.isArray(up) && up.filter((x) => Math.abs(x) > 1e-6 * Math.hypot(...up)).length > 1 ? up : this.upright;
   }
 
-  get interactive() {
-    return this.#orbit.enabled;
+  get pointSize() {
+    return this.#pointSize;
   }
 
-  set interactive(interactive) {
-    this.#orbit.enable(interactive);
-  }
-
-  get autoRotate() {
-    return this.#orbit.autoRotate;
-  }
-
-  set autoRotate(turns) {
-    this.#orbit.autoRotate = turns;
-  }
-
-  get parallel() {
-    return this.#orbit.parallel;
-  }
-
-  set parallel(parallel) {
-    this.#orbit.parallel = parallel;
-  }
-
-  get pose() {
-    return this.#orbit.pose;
-  }
-
-  /** @param {number} right @param {number} over radians */
-  turn(right, over) {
-    this.#orbit.turn(right, over, 'program');
-  }
-
-  /** @param {number} factor */
-  zoom(factor) {
-    this.#orbit.zoom(factor, 'program');
-  }
-
-  home() {
-    this.#orbit.home();
-  }
-
-  fit() {
-    this.#orbit.fit();
-  }
-
-  /** @param {import('../viewer.js').Side} side */
-  lookFrom(side) {
-    this.#orbit.lookFrom(side);
+  set pointSize(scale) {
+    this.#pointSize = scale;
+    this.#ask();
   }
 
   /** @param {number} x @param {number} y */
@@ -281,10 +245,71 @@ class CanvasViewer extends EventTarget {
     const side = this.sides.find(({ from, to }) => x * ratio >= from && x * ratio < to);
     const layer = side && this.#stage.layers.get(side.layer);
     if (!side || !layer) return null;
-    this.#orbit.update(performance.now());
+    this.orbit.update(performance.now());
     this.camera.updateMatrixWorld();
     const found = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
-    return found && { layer: side.layer, ...found };
+    if (!found) return null;
+    const { triangle, normal, point } = found;
+    return { layer: side.layer, triangle, normal, position: this.#unplaced(point) };
+  }
+
+  /** @param {[number, number, number]} position @param {[number, number, number]} [normal] */
+  project(position, normal) {
+    const { center, diagonal } = this.box ?? { center: [0, 0, 0], diagonal: 1 };
+    const { root } = this.#stage;
+    this.camera.updateMatrixWorld();
+    const at = new Vector3(...position).sub(new Vector3(...center)).divideScalar(diagonal).applyQuaternion(root.quaternion);
+    const facing = normal && new Vector3(...normal).applyQuaternion(root.quaternion).dot(this.camera.position.clone().sub(at)) > 0;
+    const { x, y, z } = at.project(this.camera);
+    const { width, height, ratio } = this;
+    return { x: ((1 + x) * width) / 2 / ratio, y: ((1 - y) * height) / 2 / ratio, visible: Math.abs(z) <= 1 && facing !== false };
+  }
+
+  /** The coordinates in the data of a point before the camera. @param {Vector3} point @returns {[number, number, number]} */
+  #unplaced(point) {
+    const { center, diagonal } = this.box ?? { center: [0, 0, 0], diagonal: 1 };
+    const { x, y, z } = point.clone().applyQuaternion(this.#stage.root.quaternion.clone().invert());
+    return [center[0] + diagonal * x, center[1] + diagonal * y, center[2] + diagonal * z];
+  }
+
+  /** @returns {[number, number, number] | null} */
+  get dimensions() {
+    return this.box && [...this.box.size];
+  }
+
+  /** @returns {object | typeof NEUTRAL} */
+  get surroundings() {
+    return this.#surroundings;
+  }
+
+  set surroundings(surroundings) {
+    if (surroundings === this.#surroundings) return;
+    if (this.#surroundings !== NEUTRAL) this.#painter.drop(this.#surroundings);
+    this.#surroundings = /** @type {import('three').Texture | typeof NEUTRAL} */ (surroundings);
+    this.#ask();
+  }
+
+  get exposure() {
+    return this.#exposure;
+  }
+
+  set exposure(exposure) {
+    this.#exposure = exposure;
+    this.#ask();
+  }
+
+  get shadow() {
+    return this.#ground.strength;
+  }
+
+  set shadow(strength) {
+    this.#ground.strength = strength;
+    this.#ask();
+  }
+
+  /** Draws the shadow, where it is not what it was. @param {import('three').WebGLRenderer} renderer */
+  readied(renderer) {
+    this.#ground.ready(renderer, this.scene, this.#stage);
   }
 
   /** @param {string} [type] @param {number} [quality] */
@@ -300,24 +325,26 @@ class CanvasViewer extends EventTarget {
 
   clear() {
     this.#stage.clear();
-    this.#frame = null;
+    this.#ground.stale();
+    this.box = null;
     this.context.clearRect(0, 0, this.width, this.height);
   }
 
   suspend() {
     this.#awake = false;
     this.#painter.delete(this);
-    this.#orbit.listen(false);
+    this.orbit.listen(false);
     this.#size.stop();
     inSight().delete(this.#canvas);
     this.#stage.free();
+    this.#ground.free();
   }
 
   resume() {
     if (this.#awake) return;
     this.#awake = true;
     this.#painter.add(this);
-    this.#orbit.listen(true);
+    this.orbit.listen(true);
     this.#size.follow();
     inSight().add(this.#canvas, (seen) => {
       this.#seen = seen;
@@ -340,14 +367,16 @@ class CanvasViewer extends EventTarget {
     const layer = this.#stage.layers.get(name);
     this.camera.layers.set(layer?.bit ?? ALWAYS);
     this.camera.layers.enable(ALWAYS);
+    this.#ground.plane.visible = this.#ground.strength > 0 && layer?.points === false;
     if (!layer?.points) return 0;
-    const { parallel, distance } = this.#orbit;
+    const { parallel, distance } = this.orbit;
     const perUnit = (this.camera.projectionMatrix.elements[5] * this.height) / 2;
     let dome = 1;
     for (const { material } of layer.objects) {
       const { uniforms } = /** @type {import('three').ShaderMaterial} */ (material);
       uniforms.pixelsPerUnit.value = parallel ? perUnit * distance : perUnit;
       uniforms.distance.value = distance;
+      uniforms.scale.value = this.#pointSize;
       uniforms.smallest.value = 1.5 * this.ratio;
       if (uniforms.measured.value) dome = MEASURED_DOME;
     }
@@ -356,13 +385,15 @@ class CanvasViewer extends EventTarget {
 
   /** @param {boolean} lost */
   contextChanged(lost) {
+    this.#ground.stale();
     this.dispatchEvent(new Event(lost ? 'contextlost' : 'contextrestored'));
   }
 
   /** @param {number} now */
   #draw(now) {
-    this.#orbit.update(now);
+    this.orbit.update(now);
     if (this.sides.some(({ layer }) => this.has(layer))) this.#painter.paint(this);
+    this.dispatchEvent(new Event('draw'));
     if (!this.#moved) return;
     const by = this.#moved;
     this.#moved = null;
@@ -387,7 +418,7 @@ class CanvasViewer extends EventTarget {
     const [left, right] = this.#kept(this.#insets.left, this.#insets.right, width);
     const [top, bottom] = this.#kept(this.#insets.top, this.#insets.bottom, height);
     const [across, free] = [width - left - right, height - top - bottom];
-    this.#orbit.reshape(() => {
+    this.orbit.reshape(() => {
       this.camera.aspect = across / free;
       this.camera.setViewOffset(across, free, -left, -top, width, height);
     });

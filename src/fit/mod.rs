@@ -2,35 +2,34 @@
 //!
 //! f(x) = Σ w_i φ(|x − c_i|) + λ0 + λ1 x + λ2 y + λ3 z (eq. 9, 10) with f = 0 at the sites and f = ±d at offset points
 //! along the normal; the weights are orthogonal to linear polynomials (the lower rows of eq. 11). The offset points
-//! c_i are centres too. A ridge on the diagonal smooths. The system is solved by LU.
+//! c_i are centres too. A ridge on the diagonal smooths.
 //!
 //! Every function is right up to its sign: f and −f fit the sites equally well, and [`crate::orient`] chooses.
 //!
 //! 1. [`cells`]: the sites are divided into overlapping sub-domains.
-//! 2. Fit: each sub-domain's system (eq. 11) is solved; [`local`] evaluates its function.
+//! 2. Fit: `system` solves each sub-domain's eq. 11; [`local`] evaluates its function.
 //! 3. A sub-domain whose residual is beyond the accuracy asked for is divided and fitted again.
 //! 4. `faces`: which of two crossing sheets each part of a sub-domain belongs to, where the caller wants sharp edges.
 //!
 //! **In**: sites (positions, spacing, unoriented normals) in the unit frame. **Out**: [`Fits`], one function for each sub-domain
 //! with its domain, and the residual at every input point.
 //!
-//! **Cost**: one dense LU for each sub-domain, cubic in its sites, whose number is bounded: linear in the points.
+//! **Cost**: one dense Cholesky factor for each sub-domain, cubic in its sites, whose number is bounded: linear in the points.
 
 pub mod cells;
 pub(crate) mod faces;
 pub mod local;
+mod system;
 
 use crate::base::error::Result;
-use crate::base::kernel::phi;
 use crate::base::par;
-use crate::base::params::{Kernel, Smoothing, SurfaceParams};
+use crate::base::params::{Smoothing, SurfaceParams};
 use crate::base::progress::{Progress, Stage};
-use crate::cloud::queries::Neighbor;
 use crate::fit::cells::{Growth, Sites, Subdomain};
 use crate::fit::faces::Faces;
 use crate::fit::local::{LocalFit, Rbf};
+use crate::fit::system::System;
 use glam::Vec3;
-use nalgebra::{DMatrix, DVector};
 
 /// What the fit of all sub-domains gave.
 #[derive(Debug, Clone)]
@@ -45,8 +44,6 @@ pub struct Fits {
     pub residuals: Vec<f32>,
 }
 
-/// Offsets d along the normal, in spacings: without noise and at a noise of half a spacing and more.
-const OFFSET: [f32; 2] = [0.6, 1.5];
 /// Share of the smooth function's squared distances to the input that functions of faces must stay under. At 1 edges are 2 %
 /// better and a few sites at them worse oriented.
 const SHARPER: f64 = 0.9;
@@ -55,11 +52,6 @@ const SHARPER: f64 = 0.9;
 const CLOSE: f32 = 0.01;
 /// How often a sub-domain may be cut.
 const MAX_CUTS: usize = 2;
-/// How strongly surfaces of unit diagonal vary at unit distance, as the factor of r³ in their covariance. Measured on
-/// bunny, armadillo and fandisk, full and reduced, at noise 0.1 and 0.5 %: errors are lowest for 0.17 to 0.33 and 5 %
-/// higher at half and twice that.
-const ROUGHNESS: f64 = 0.25;
-
 /// Fits every sub-domain and refines those that miss the accuracy at the `input` points, each of which stands for the site
 /// that `site_of` names, if any.
 ///
@@ -204,136 +196,4 @@ impl Fitting<'_> {
 fn squares(fits: &[Refined]) -> f64 {
     let residuals = fits.iter().flat_map(|(_, _, residuals)| residuals);
     residuals.map(|&(_, r)| (r as f64).powi(2)).sum()
-}
-
-/// Eq. 11 of one sub-domain, in its own coordinates: origin at the mean of its support, unit its radius.
-struct System {
-    kernel: Kernel,
-    center: Vec3,
-    radius: f32,
-    /// Sites first, then offset points.
-    centers: Vec<[f64; 3]>,
-    /// Wanted values h_i.
-    values: Vec<f64>,
-    sites: usize,
-    /// φ at one spacing.
-    unit_phi: f64,
-}
-
-impl System {
-    fn new(through: &[(u32, Vec3)], s: &Subdomain, sites: &Sites, kernel: Kernel) -> System {
-        let position = |i: u32| sites.tree.points[i as usize];
-        let positions = || through.iter().map(|&(i, _)| position(i));
-        let center = positions().sum::<Vec3>() / through.len() as f32;
-        let reach = positions().map(|p| p.distance(center)).fold(0.0, f32::max);
-        let radius = if reach > 0.0 { reach } else { 1.0 };
-        let local = |p: Vec3| ((p - center) / radius).as_dvec3().to_array();
-        let mut centers: Vec<[f64; 3]> = positions().map(local).collect();
-        let mut values = vec![0.0; centers.len()];
-        // Every second site has offset points: the function is smooth at the scale of the spacing.
-        for &(i, normal) in through.iter().step_by(2) {
-            let spacing = sites.spacing[i as usize];
-            let relative = (2.0 * sites.noise / spacing.max(f32::MIN_POSITIVE)).min(1.0);
-            let wanted = spacing * (OFFSET[0] + relative * (OFFSET[1] - OFFSET[0]));
-            for sign in [1.0, -1.0] {
-                if let Some(d) = free_offset(sites, s, i, normal * sign, wanted) {
-                    centers.push(local(position(i) + normal * (sign * d)));
-                    values.push((sign * d / radius) as f64);
-                }
-            }
-        }
-        let spacing = (sites.spacing[through[0].0 as usize] / radius) as f64;
-        let unit_phi = phi(kernel, spacing * spacing).0.abs();
-        System {
-            kernel,
-            center,
-            radius,
-            centers,
-            values,
-            sites: through.len(),
-            unit_phi,
-        }
-    }
-
-    /// Eq. 11 with `ridge` on its diagonal; `None` when a pivot vanishes.
-    fn solve(&self, ridge: f64) -> Option<Rbf> {
-        let k = self.centers.len();
-        if self.sites < 4 {
-            return None;
-        }
-        let mut m = DMatrix::zeros(k + 4, k + 4);
-        for j in 0..k {
-            for i in 0..j {
-                let [a, b] = [self.centers[i], self.centers[j]];
-                let r2 = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2);
-                let value = phi(self.kernel, r2).0;
-                m[(i, j)] = value;
-                m[(j, i)] = value;
-            }
-            m[(j, j)] = ridge;
-            for (row, value) in [
-                1.0,
-                self.centers[j][0],
-                self.centers[j][1],
-                self.centers[j][2],
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                m[(k + row, j)] = value;
-                m[(j, k + row)] = value;
-            }
-        }
-        let mut h = DVector::zeros(k + 4);
-        h.rows_mut(0, k).copy_from_slice(&self.values);
-        let solved = m.lu().solve_mut(&mut h);
-        if !solved || !h.iter().all(|w| w.abs() < 1e9) {
-            return None;
-        }
-        Some(self.fitted(&h.as_slice()[..k], [h[k], h[k + 1], h[k + 2], h[k + 3]]))
-    }
-
-    /// The diagonal of eq. 11 for this noise: the variance of a value against that of the function, in local units
-    /// (kriging with the kernel as generalised covariance: Matheron, 1973).
-    fn ridge_for(&self, noise: f64) -> f64 {
-        noise * noise / (ROUGHNESS * (self.radius as f64).powi(3))
-    }
-
-    /// The mean plane of the support, for sub-domains that eq. 11 cannot serve.
-    fn plane(&self, through: &[(u32, Vec3)]) -> Rbf {
-        let sum: Vec3 = through.iter().map(|&(_, n)| n).sum();
-        let n = sum.normalize_or_zero().as_dvec3();
-        self.fitted(&[], [0.0, n.x, n.y, n.z])
-    }
-
-    fn fitted(&self, weights: &[f64], linear: [f64; 4]) -> Rbf {
-        let centers = self.centers.iter().zip(weights);
-        let centers = centers
-            .map(|(c, &w)| [c[0] as f32, c[1] as f32, c[2] as f32, w as f32])
-            .collect();
-        let (kernel, center, radius) = (self.kernel, self.center, self.radius);
-        Rbf {
-            kernel,
-            center,
-            radius,
-            centers,
-            linear: linear.map(|l| l as f32),
-        }
-    }
-}
-
-/// The largest of d, d/2, d/4 for which the point at distance d along `normal` from site `i` is nearest to a site of
-/// its own sub-domain and really that far from it: offset points never reach another sheet.
-fn free_offset(sites: &Sites, s: &Subdomain, i: u32, normal: Vec3, wanted: f32) -> Option<f32> {
-    let p = sites.tree.points[i as usize];
-    [wanted, 0.5 * wanted, 0.25 * wanted]
-        .into_iter()
-        .find(|&d| {
-            let own = Neighbor {
-                distance2: d * d,
-                index: i,
-            };
-            let near = sites.tree.nearer_than(own, p + normal * d);
-            s.support.contains(&near.index) && near.distance2.sqrt() >= 0.6 * d
-        })
 }

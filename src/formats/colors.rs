@@ -63,3 +63,14 @@ impl Tally {
         }
     }
 }
+
+/// The colour that a value packs: its integer, or, of a float, its `bits`. Some programs write the integer as a float's value: it
+/// is whole and not tiny, as the bits of no colour are without transparency or with all of it.
+pub(super) fn unpacked(is_float: bool, value: f64, bits: u32) -> u32 {
+    let is_integer = (1.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;
+    if is_float && !is_integer {
+        bits
+    } else {
+        value as i64 as u32
+    }
+}

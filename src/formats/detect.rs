@@ -96,13 +96,12 @@ fn by_look(_: &[u8], _: u64) -> Option<Format> {
 
 /// Whether a ZIP archive starts as 3MF files do.
 fn is_model(head: &[u8]) -> bool {
-    let has = |name: &[u8]| head.windows(name.len()).any(|window| window == name);
-    has(b"3D/3dmodel.model") || has(b"3D/_rels/3dmodel.model.rels")
+    has(head, b"3D/3dmodel.model") || has(head, b"3D/_rels/3dmodel.model.rels")
 }
 
 /// The name of a format that is recognised by its first bytes but has no reader here.
 fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
-    const SIGNATURES: [(&[u8], &str); 30] = [
+    const SIGNATURES: [(&[u8], &str); 32] = [
         (b"\xff\xfe", "UTF-16 text"),
         (b"\xfe\xff", "UTF-16 text"),
         (b"PK\x03\x04", "a ZIP archive"),
@@ -136,15 +135,37 @@ fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
         (b"\x89HDF", "an HDF5 file"),
         (b"CDF\x01", "a NetCDF file"),
         (b"#ROSBAG", "a ROS bag"),
+        (b"DSBB", "a Surfer grid in binary, not as text"),
+        (b"DSRB", "a Surfer grid in binary, not as text"),
     ];
     let known = SIGNATURES
         .iter()
         .find(|(start, _)| head.starts_with(start))
         .map(|(_, name)| *name);
+    if head.get(257..262) == Some(b"ustar") {
+        return Some("a tar archive");
+    }
     match known {
         Some("an XML or HTML document") => Some(xml_kind(head)),
+        Some("a JSON document") => Some(json_kind(head)),
         known => known,
     }
+}
+
+/// What kind of document a JSON file is.
+fn json_kind(head: &[u8]) -> &'static str {
+    const KINDS: [(&[u8], &str); 3] = [
+        (b"\"asset\"", "a glTF scene as text (.gltf), not as GLB"),
+        (b"\"FeatureCollection\"", "a GeoJSON document"),
+        (b"\"CityJSON\"", "a CityJSON model"),
+    ];
+    let head = &head[..head.len().min(4096)];
+    let found = KINDS.iter().find(|(mark, _)| has(head, mark));
+    found.map_or("a JSON document", |(_, name)| name)
+}
+
+fn has(head: &[u8], name: &[u8]) -> bool {
+    head.windows(name.len()).any(|window| window == name)
 }
 
 /// What kind of document an XML file is.
@@ -157,8 +178,7 @@ fn xml_kind(head: &[u8]) -> &'static str {
         (b"<LandXML", "a LandXML survey"),
     ];
     let head = &head[..head.len().min(4096)];
-    let has = |name: &[u8]| head.windows(name.len()).any(|window| window == name);
-    let found = KINDS.iter().find(|(mark, _)| has(mark));
+    let found = KINDS.iter().find(|(mark, _)| has(head, mark));
     found.map_or("an XML or HTML document", |(_, name)| name)
 }
 

@@ -12,13 +12,14 @@
 mod fields;
 mod picture;
 
+use super::colors::unpacked;
 use super::input::Input;
 use super::lzf;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use super::text::number;
 use crate::base::error::Result;
-use fields::{Encoding, Field, Kind, columns, packed_color, unpacked, value};
+use fields::{Encoding, Field, Kind, columns, packed_color, value};
 use picture::Picture;
 
 /// Whether the content starts as a PCD file does: comments, then `VERSION` or `FIELDS`.
@@ -289,7 +290,11 @@ impl Body {
                     }
                 }
                 if self.color == Some(i) {
-                    packed = Some(unpacked(field, first, (first as f32).to_bits()));
+                    packed = Some(unpacked(
+                        field.kind == Kind::Float,
+                        first,
+                        (first as f32).to_bits(),
+                    ));
                 }
                 self.values.push(first);
             }
@@ -389,8 +394,12 @@ impl Body {
             };
             if self.color == Some(i) {
                 packed = Some(match *bytes {
-                    [a, b, c, d] => unpacked(field, first, u32::from_le_bytes([a, b, c, d])),
-                    _ => unpacked(field, first, (first as f32).to_bits()),
+                    [a, b, c, d] => unpacked(
+                        field.kind == Kind::Float,
+                        first,
+                        u32::from_le_bytes([a, b, c, d]),
+                    ),
+                    _ => unpacked(field.kind == Kind::Float, first, (first as f32).to_bits()),
                 });
             }
             self.values.push(first);

@@ -20,7 +20,7 @@ use super::table::Table;
 use super::text::{number, words};
 use crate::base::error::{Error, Result};
 use faces::{Layout, Lists};
-use header::{Element, Encoding, Header, HeaderLines, Property};
+use header::{Element, Encoding, Header, HeaderLines, Packed, Property};
 
 /// Whether the content starts as a PLY file does.
 pub(super) fn looks_like(head: &[u8]) -> bool {
@@ -57,24 +57,27 @@ impl Parser for Ply {
                 let Some(header) = self.header.read(input)? else {
                     return Ok(Step::More);
                 };
-                let (points, columns) = header.points(input)?;
-                let most = header.most_rows(points, input);
-                *table = Some(Table::new(columns, Some(most)));
+                let (points, mut columns) = header.points(input)?;
+                let packed = header.elements[points].packed_color(&mut columns);
                 let has_faces =
                     |element: &Element| Layout::of(element).is_some() && element.rows > 0;
-                let last = match &mut self.faces {
-                    Some(faces) => {
-                        faces::looks(&header, faces);
-                        header.elements.iter().rposition(has_faces)
-                    }
-                    None => None,
-                };
+                let last = self.faces.as_mut().and_then(|faces| {
+                    faces::looks(&header, faces);
+                    header.elements.iter().rposition(has_faces)
+                });
+                let places = last.and_then(|_| faces::places_of_rows(&header, points));
+                if let Some(places) = places {
+                    columns.scalars.retain(|(at, _)| !places.contains(at));
+                }
+                let most = header.most_rows(points, input);
+                let table = table.insert(Table::new(columns, Some(most)));
+                table.gone = last.is_some().then(Vec::new);
                 if last.is_none() {
                     self.faces = None;
-                } else if let Some(table) = table {
-                    table.gone = Some(Vec::new());
                 }
                 self.rows.insert(Rows {
+                    packed,
+                    places,
                     header,
                     points,
                     last: last.unwrap_or(0).max(points),
@@ -126,6 +129,9 @@ struct Rows {
     element: usize,
     row: u64,
     skipped: u64,
+    /// Where the rows of the points have a packed colour, and places in a picture.
+    packed: Option<Packed>,
+    places: Option<[usize; 2]>,
     values: Vec<f64>,
     lists: Lists,
 }
@@ -141,15 +147,22 @@ impl Rows {
         while self.element <= self.last {
             let element = &self.header.elements[self.element];
             let points = self.element == self.points;
-            let layout = faces
-                .as_mut()
-                .and_then(|faces| Some((Layout::of(element)?, faces)));
+            let layout = Layout::of(element).filter(|_| faces.is_some() && !points);
             let cells = (&mut self.values, &mut self.lists);
             if points {
-                self.row += read_rows(&self.header, element, self.row, cells, input, |row, _| {
-                    table.push(row)
-                })?;
-            } else if let Some((layout, faces)) = layout {
+                let add = |row: &mut Vec<f64>, _: &Lists| {
+                    if let (Some([u, v]), Some(faces)) = (self.places, &mut *faces) {
+                        faces.places.push([row[u] as f32, 1.0 - row[v] as f32]);
+                    }
+                    if let Some(packed) = &self.packed {
+                        let color = packed.color(row);
+                        row.extend(color);
+                    }
+                    table.push(row);
+                };
+                self.row += read_rows(&self.header, element, self.row, cells, input, add)?;
+            } else if let (Some(mut layout), Some(faces)) = (layout, &mut *faces) {
+                layout.by_row = self.places.is_some();
                 let known = (self.element > self.points).then_some(&*table);
                 self.row += read_rows(
                     &self.header,
@@ -191,7 +204,7 @@ fn read_rows(
     read: u64,
     (values, lists): (&mut Vec<f64>, &mut Lists),
     input: &mut Input,
-    mut row: impl FnMut(&[f64], &Lists),
+    mut row: impl FnMut(&mut Vec<f64>, &Lists),
 ) -> Result<u64> {
     if element.properties.is_empty() {
         return Ok(element.rows);

@@ -1,6 +1,7 @@
 //! PTX (Leica Cyclone): scans, each with the counts of its columns and rows, the scanner's place and axes, a matrix, and a line
 //! `x y z intensity [r g b]` for each cell of its grid. The matrix takes the points to the common frame: a point is a row
-//! before it, and its last row is the scanner's place. Cells without a return are `0 0 0`; they are left out and counted.
+//! before it, and its last row is the scanner's place. Cells without a return are `0 0 0`; they are left out and counted. Points of a
+//! scan without colours are white where another scan has some.
 
 use super::colors::ColorRange;
 use super::input::Input;
@@ -39,7 +40,7 @@ pub(super) struct Ptx {
     keep: bool,
     header: Vec<Vec<f64>>,
     scan: Option<Scan>,
-    /// Values a point, once one has been.
+    /// Values a point of the scan at hand, once one has been.
     width: usize,
     values: Vec<f64>,
 }
@@ -135,6 +136,7 @@ impl Ptx {
         });
         let [x, y, z, _] = matrix[3];
         table.seen_from(Some([x, y, z]));
+        self.width = 0;
         self.scan = (left > 0).then_some(Scan { left, matrix });
         Ok(())
     }
@@ -153,7 +155,8 @@ fn point(
         *width = values.len();
     }
     if values.len() != *width || ![3, 4, 6, 7].contains(width) {
-        return Err(input.bad_line("x y z, an intensity, and a colour where all have one", line));
+        let expected = "x y z, an intensity, and a colour where all of the scan have one";
+        return Err(input.bad_line(expected, line));
     }
     scan.left -= 1;
     let Some(table) = table else {
@@ -175,7 +178,7 @@ fn point(
     };
     let color = match *width {
         6 | 7 => [values[*width - 3], values[*width - 2], values[*width - 1]],
-        _ => [0.0; 3],
+        _ => [255.0; 3],
     };
     table.colors_said |= *width > 4;
     table.push(&[at(0), at(1), at(2), color[0], color[1], color[2], intensity]);
@@ -187,6 +190,7 @@ fn columns() -> Columns {
         color: Some([3, 4, 5]),
         colors: ColorRange::Integers,
         scalars: vec![(6, "intensity".into())],
+        optional_from: 0,
         ..Columns::xyz()
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! - **No data**: a coordinate that writers use for a missing one (-9999, -32768, …) and that lies further beyond all other
 //!   coordinates of its axis than they extend; and any of 1e30 or more (rasters have ∓3.4e38, 1.7e38 or 1e38).
-//! - **No return**: points at exactly 0 0 0, or at exactly the sensor's place, where there are many of them and other
+//! - **No return**: points at exactly 0 0 0 or another place of equal coordinates (-1 -1 -1), or at exactly the sensor's place, where there are many of them and other
 //!   places are not repeated as often. A file that has every point many times, or corners of its own for each triangle,
 //!   repeats its other places, too.
 //!
@@ -11,13 +11,58 @@
 /// A coordinate of this size or more is none.
 pub(super) const HUGE: f64 = 1e30;
 
-/// Coordinates that writers have for missing ones.
-const NO_DATA: [f64; 9] = [
-    -999.0, -9999.0, -99_999.0, -999_999.0, -32_767.0, -32_768.0, 9999.0, 99_999.0, 999_999.0,
+/// Coordinates that writers have for missing ones, in order; those that single precision rounds in both spellings.
+const NO_DATA: [f64; 35] = [
+    -1e20_f32 as f64,
+    -1e20,
+    -1e10,
+    -2_147_483_648.0,
+    -999_999.0,
+    -99_999.0,
+    -88_888.0,
+    -32_768.0,
+    -32_767.0,
+    -9999.99_f32 as f64,
+    -9999.99,
+    -9999.9_f32 as f64,
+    -9999.9,
+    -9999.0,
+    -8888.0,
+    -7777.0,
+    -6999.0,
+    -999.9_f32 as f64,
+    -999.9,
+    -999.25,
+    -999.0,
+    -99.0,
+    9999.0,
+    9999.99,
+    9999.99_f32 as f64,
+    65_535.0,
+    99_999.0,
+    99_999.99,
+    99_999.99_f32 as f64,
+    999_999.0,
+    2_147_483_647.0,
+    2_147_483_648.0,
+    1e10,
+    1e20,
+    1e20_f32 as f64,
 ];
+
+/// Which of [`NO_DATA`] a coordinate is.
+fn no_data(x: f64) -> Option<usize> {
+    // Nearly all coordinates are told apart by this alone.
+    let may_be = x.abs() >= 99.0 && (x == x.trunc() || (999.0..1e5).contains(&x.abs()));
+    let found = || NO_DATA.binary_search_by(|value| value.total_cmp(&x)).ok();
+    may_be.then(found)?
+}
 
 /// Other places whose repetitions are counted.
 const PEERS: usize = 16;
+
+/// Places of equal coordinates that are counted.
+const MOST_EQUAL: usize = 4;
 
 /// A place is repeated this many times as often as its peers before its points count as no returns.
 const OFTEN: u64 = 4;
@@ -71,6 +116,8 @@ pub(super) struct Sentinels {
     places: Vec<([f64; 3], u64)>,
     /// Which of them is the sensor of now.
     sensor: usize,
+    /// The first places whose three coordinates are equal (-1 -1 -1), and points at each.
+    equal: Vec<([f64; 3], u64)>,
     /// The first other places, and points at each.
     peers: Vec<([f64; 3], u64)>,
 }
@@ -80,10 +127,11 @@ impl Default for Sentinels {
         Sentinels {
             ordinary: Span::EMPTY,
             odd: Span::EMPTY,
-            no_data: Default::default(),
+            no_data: [[0; NO_DATA.len()]; 3],
             huge: 0,
             places: vec![([0.0; 3], 0)],
             sensor: 0,
+            equal: Vec::new(),
             peers: Vec::new(),
         }
     }
@@ -105,7 +153,7 @@ impl Sentinels {
             if x.abs() >= HUGE {
                 self.huge += 1;
                 odd = true;
-            } else if let Some(i) = NO_DATA.iter().position(|value| *value == x) {
+            } else if let Some(i) = no_data(x) {
                 self.no_data[axis][i] += 1;
                 odd = true;
             }
@@ -116,16 +164,16 @@ impl Sentinels {
                 odd = true;
             }
         }
+        let [x, y, z] = position;
+        if !odd && x == y && y == z {
+            odd = count_at(&mut self.equal, position, MOST_EQUAL);
+        }
         if odd {
             self.odd.add(position);
             return;
         }
         self.ordinary.add(position);
-        if let Some(peer) = self.peers.iter_mut().find(|(place, _)| *place == position) {
-            peer.1 += 1;
-        } else if self.peers.len() < PEERS {
-            self.peers.push((position, 1));
-        }
+        count_at(&mut self.peers, position, PEERS);
     }
 
     /// What is left out.
@@ -151,7 +199,8 @@ impl Sentinels {
             let all = rows + self.odd.rows;
             rows >= 4 && count >= 3 && (count >= 20 || 100 * count >= all) && count > OFTEN * usual
         };
-        let places = self.places.iter().filter(|(_, count)| many(*count));
+        let places = self.places.iter().chain(&self.equal);
+        let places = places.filter(|(_, count)| many(*count));
         out.no_returns = places.map(|(place, _)| *place).collect();
         out
     }
@@ -163,7 +212,8 @@ impl Sentinels {
             let mut found = NO_DATA.iter().zip(counts).filter(|(_, count)| **count > 0);
             found.all(|(value, _)| out.contains(value))
         });
-        let mut places = self.places.iter().filter(|(_, count)| *count > 0);
+        let places = self.places.iter().chain(&self.equal);
+        let mut places = places.filter(|(_, count)| *count > 0);
         let no_return = places.all(|(place, _)| left_out.no_returns.contains(place));
         if no_data && no_return && (left_out.huge || self.huge == 0) {
             self.ordinary
@@ -171,6 +221,19 @@ impl Sentinels {
             self.ordinary.and(self.odd)
         }
     }
+}
+
+/// Counts a point at its place, where it is one of the first; whether it is.
+fn count_at(places: &mut Vec<([f64; 3], u64)>, position: [f64; 3], most: usize) -> bool {
+    if let Some(known) = places.iter_mut().find(|(place, _)| *place == position) {
+        known.1 += 1;
+        return true;
+    }
+    let room = places.len() < most;
+    if room {
+        places.push((position, 1));
+    }
+    room
 }
 
 /// Which points are left out.
@@ -209,6 +272,15 @@ impl LeftOut {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_are_in_order() {
+        assert!(NO_DATA.is_sorted());
+        for (i, value) in NO_DATA.iter().enumerate() {
+            assert_eq!(no_data(*value), Some(i));
+        }
+        assert_eq!([0.5, 455_000.25, -9998.5].map(no_data), [None; 3]);
+    }
 
     #[test]
     fn no_returns_of_a_sensor_that_scans_again_are_found() {

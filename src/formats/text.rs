@@ -26,6 +26,19 @@ pub(super) fn number(token: &[u8]) -> Option<f64> {
     None
 }
 
+/// A number whose one comma has digits on both sides.
+pub(super) fn decimal_comma(token: &[u8]) -> Option<f64> {
+    let at = token.iter().position(|&b| b == b',')?;
+    let (before, after) = (token[..at].last()?, token.get(at + 1)?);
+    let digits = before.is_ascii_digit() && after.is_ascii_digit();
+    if !digits || token.contains(&b'.') {
+        return None;
+    }
+    let mut text = token.to_vec();
+    text[at] = b'.';
+    number(&text)
+}
+
 /// The values of a line between blanks and tabs.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     line.split(u8::is_ascii_whitespace)
@@ -46,6 +59,11 @@ pub(super) fn quote(bytes: &[u8]) -> String {
     const MOST: usize = 40;
     const MOST_BYTES: usize = 8;
     let head = &bytes[..bytes.len().min(4 * MOST)];
+    // What is behind zeros is no text.
+    let zeros = head.windows(2).position(|pair| pair == [0, 0]);
+    if let Some(zeros) = zeros.filter(|&zeros| zeros > 0) {
+        return quote(&head[..zeros]) + " and zeros";
+    }
     // The last character may be cut.
     let whole = match std::str::from_utf8(head) {
         Ok(text) => Some(text),
@@ -114,6 +132,14 @@ mod tests {
     }
 
     #[test]
+    fn a_decimal_comma_has_digits_on_both_sides() {
+        assert_eq!(decimal_comma(b"-1,5e3"), Some(-1500.0));
+        for token in [&b"1,"[..], b",5", b"1,2,3", b"1.0,5", b"1, 5"] {
+            assert_eq!(decimal_comma(token), None);
+        }
+    }
+
+    #[test]
     fn quotes_are_short_and_printable() {
         assert_eq!(quote(b"a\x00\n"), "\"a\\u{0}\\n\"");
         assert!(quote(&[b'x'; 1000]).chars().count() < 50);
@@ -122,5 +148,6 @@ mod tests {
             "the bytes 89 50 4e 47 0d 0a 1a 0a …"
         );
         assert_eq!(quote(b"H\xf6he"), "\"Höhe\"");
+        assert_eq!(quote(b"DSRB\0\0\0\x01"), "\"DSRB\" and zeros");
     }
 }

@@ -22,6 +22,7 @@ mod header;
 mod line;
 mod names;
 mod plan;
+mod value;
 
 use super::input::Input;
 use super::options::ReadOptions;
@@ -29,6 +30,7 @@ use super::parser::{Parser, Step};
 use super::preview::Preview;
 use super::table::Table;
 use crate::base::error::{Error, Result};
+use crate::cloud::Unit;
 use line::{Line, NoPlan, Numbered, is_comment, line_of};
 use plan::Plan;
 
@@ -116,6 +118,10 @@ impl Parser for Xyz {
             .map_or(Vec::new(), |plan| plan.roles.clone())
     }
 
+    fn unit(&self) -> Option<Unit> {
+        self.plan.as_ref().and_then(|plan| plan.unit)
+    }
+
     fn preview(&self) -> Option<Preview> {
         self.preview.clone()
     }
@@ -130,7 +136,7 @@ fn read_line(
     values: &mut Vec<f64>,
 ) -> Result<Line> {
     let line = line.trim_ascii_end();
-    if line.is_empty() || is_comment(line) || plan.is_no_point(line) {
+    if is_comment(line) || plan.is_no_point(line) {
         return Ok(Line::Nothing);
     }
     if plan.dialect.split(line).nth(1).is_none()
@@ -138,8 +144,11 @@ fn read_line(
     {
         return Ok(count);
     }
-    plan.row(line, input, number, values)?;
-    Ok(Line::Row)
+    match plan.row(line, input, number, values) {
+        // Words between the rows, or below them.
+        Err(_) if plan.is_title(line) => Ok(Line::Nothing),
+        done => done.map(|()| Line::Row),
+    }
 }
 
 fn push(line: Line, values: &[f64], promised: &mut Option<u64>, rows: &mut u64, table: &mut Table) {

@@ -31,8 +31,9 @@ const DEEP: f64 = 0.5;
 #[derive(Default)]
 pub(crate) struct Rings {
     seen: Vec<u32>,
-    /// Where the last ring starts.
-    last: usize,
+    /// Of each vertex of the mesh the number of the last gathering that saw it.
+    seen_in: Vec<u32>,
+    gathering: u32,
 }
 
 /// The sides of a crease next to one of its vertices, and where they meet.
@@ -101,21 +102,29 @@ pub(crate) fn meet(
 impl Rings {
     /// The vertices of [`RINGS`] rings around one.
     fn gather(&mut self, v: u32, mesh: &Mesh, around: &VertexTriangles) {
+        self.seen_in.resize(mesh.vertices.len(), 0);
+        self.gathering += 1;
         self.seen.clear();
-        self.seen.push(v);
-        self.last = 0;
+        self.see(v);
+        let mut last = 0;
         for _ in 0..RINGS {
             let end = self.seen.len();
-            for k in self.last..end {
+            for k in last..end {
                 for &t in around.of(self.seen[k]) {
                     for w in mesh.triangles[t as usize] {
-                        if !self.seen.contains(&w) {
-                            self.seen.push(w);
-                        }
+                        self.see(w);
                     }
                 }
             }
-            self.last = end;
+            last = end;
+        }
+    }
+
+    fn see(&mut self, v: u32) {
+        let seen_in = &mut self.seen_in[v as usize];
+        if *seen_in != self.gathering {
+            *seen_in = self.gathering;
+            self.seen.push(v);
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::base::error::{Error, Result};
 use crate::base::params::{COLORS, Outliers, ReduceParams};
 use crate::base::progress::{Part, Progress, Stage};
+use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
-use crate::cloud::{Cloud, Frame, Viewpoints};
 use crate::features::Features;
 use crate::features::outliers;
 use crate::reduce::Reduced;
@@ -23,8 +23,20 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
     progress.update(Stage::Octree, 0.0)?;
     let tree = Octree::build(&cloud.points);
     progress.update(Stage::Octree, 1.0)?;
-    let eyes = Eyes::of(cloud, cloud.frame, &tree);
-    let eye = |i: usize| eyes.seeing(tree.order[i] as usize);
+    // The frame of a depth camera has the camera at its origin, with all points ahead of it.
+    let origin = cloud.frame.to_unit([0.0; 3]);
+    let directions = tree
+        .points
+        .iter()
+        .map(|&p| (p - origin).normalize_or_zero());
+    let ahead = directions.sum::<Vec3>().length() > AHEAD * tree.points.len() as f32;
+    let eye = |i: usize| match &cloud.viewpoints {
+        Some(viewpoints) => {
+            let seeing = viewpoints.seeing(tree.order[i] as usize)?;
+            Some(cloud.frame.to_unit(seeing.to_array()))
+        }
+        None => ahead.then_some(origin),
+    };
     let mut features = Features::measure_seen(&tree, &eye, progress)?;
     if let Some(normals) = &cloud.normals {
         for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
@@ -39,48 +51,6 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
         }
     }
     Ok((tree, features))
-}
-
-/// Where points were seen from, in a unit frame.
-#[derive(Debug, Clone)]
-pub(crate) struct Eyes<'a> {
-    viewpoints: Option<&'a Viewpoints>,
-    frame: Frame,
-    /// The place of a depth camera, whose frame has it at its origin, with all points ahead of it.
-    camera: Option<Vec3>,
-}
-
-impl<'a> Eyes<'a> {
-    /// Those of a cloud, whose points a tree of this frame has.
-    pub(crate) fn of(cloud: &'a Cloud, frame: Frame, tree: &Octree) -> Eyes<'a> {
-        let origin = frame.to_unit([0.0; 3]);
-        let directions = tree
-            .points
-            .iter()
-            .map(|&p| (p - origin).normalize_or_zero());
-        let ahead = directions.sum::<Vec3>().length() > AHEAD * tree.points.len() as f32;
-        Eyes {
-            viewpoints: cloud.viewpoints.as_ref(),
-            frame,
-            camera: ahead.then_some(origin),
-        }
-    }
-
-    /// Whether the cloud says where from; a depth camera's place is a guess.
-    pub(crate) fn are_told(&self) -> bool {
-        self.viewpoints.is_some()
-    }
-
-    /// Where the cloud's point `i` was seen from.
-    pub(crate) fn seeing(&self, i: usize) -> Option<Vec3> {
-        match self.viewpoints {
-            Some(viewpoints) => {
-                let seeing = viewpoints.seeing(i)?;
-                Some(self.frame.to_unit(seeing.to_array()))
-            }
-            None => self.camera,
-        }
-    }
 }
 
 /// What a job starts from: the caller's points, or those that are not isolated. A job uses up an input that it owns, and

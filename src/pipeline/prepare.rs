@@ -8,7 +8,7 @@ use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::octree::Octree;
 use crate::cloud::{Cloud, Frame};
 use crate::features::{Features, outliers};
-use crate::pipeline::input::{Eyes, measure};
+use crate::pipeline::input::measure;
 use crate::prepare::pieces::{Keep, Pieces};
 use crate::prepare::planes::{Drop, Known, NONE, Planes};
 use crate::prepare::recipe::{MOST, Step};
@@ -182,8 +182,10 @@ impl Scan<'_> {
             features,
             callers,
         } = measured;
-        let eyes = Eyes::of(cloud, *frame, tree);
-        let eye = |i: usize| eyes.seeing(callers[i] as usize);
+        let eye = |i: usize| {
+            let seeing = cloud.viewpoints.as_ref()?.seeing(callers[i] as usize)?;
+            Some(frame.to_unit(seeing.to_array()))
+        };
         let mut part = Part::of(Stage::Prepare, progress, range);
         let (mask, mut report) = match step {
             Step::Outliers => {
@@ -193,8 +195,7 @@ impl Scan<'_> {
             Step::Flying => {
                 let halo = strays::halo(tree, features, &mut Part::new(&mut part, 0.0..0.6))?;
                 let mut late = Part::new(&mut part, 0.6..1.0);
-                let told = |i: usize| eye(i).filter(|_| eyes.are_told());
-                let between = strays::between(tree, &told, &mut late)?;
+                let between = strays::between(tree, &eye, &mut late)?;
                 let either = halo.into_iter().zip(between).map(|(a, b)| a || b);
                 (either.collect(), StepReport::default())
             }
@@ -207,7 +208,6 @@ impl Scan<'_> {
                 let known = Known {
                     up: cloud.up,
                     eye: &eye,
-                    told: eyes.are_told(),
                 };
                 let planes = Planes::find(tree, features, &known, (*min_share, *seed), &mut part)?;
                 let chosen = planes.chosen(drop);

@@ -99,10 +99,8 @@ pub enum Drop {
 pub struct Known<'a> {
     /// Which way is up.
     pub up: Option<Vec3>,
-    /// Where a point was seen from, in the octree's order.
+    /// Where a point was seen from, in the octree's order, where that is told and no guess.
     pub eye: &'a (dyn Fn(usize) -> Option<Vec3> + Sync),
-    /// Whether that is told, and no guess.
-    pub told: bool,
 }
 
 impl Planes {
@@ -126,7 +124,7 @@ impl Planes {
         let seen = |found: &Found| seen_from_front(tree, &voters, found, known.eye);
         let mut all: Vec<Plane> = found
             .iter()
-            .map(|plane| judged(&voters, plane, seen(plane), known.told))
+            .map(|plane| judged(&voters, plane, seen(plane)))
             .collect();
         progress.update(Stage::Prepare, 0.5)?;
         let mut of = assigned(tree, features, &all);
@@ -200,7 +198,7 @@ fn seen_from_front(
 }
 
 /// What a plane is to the rest of the scan.
-fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>, told: bool) -> Plane {
+fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Plane {
     let own = |(voter, own): (&Voter, &bool)| own.then_some(voter.at);
     let points: Vec<Vec3> = voters.iter().zip(&found.own).filter_map(own).collect();
     let sheet = Sheet::of(&points, found.normal);
@@ -231,7 +229,7 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>, told: 
         / all;
     let free_rim = sheet.free_rim(rest().filter(near).map(|(p, _)| p));
     let stands = stands / all;
-    let open = free_rim >= FREE || told && seen_from_front.is_some();
+    let open = free_rim >= FREE || seen_from_front.is_some();
     let bears = stands >= STANDS.0 || touching >= STANDS.1;
     let lies_open = free_rim >= OPEN.0 && found.share >= OPEN.1;
     Plane {

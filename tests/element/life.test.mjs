@@ -347,6 +347,8 @@ test('what goes wrong is said, by code', async () => {
     const event = (await shown.events()).at(-1);
     assert.deepEqual([event.src, event.name, event.code, event.bubbles], [src, 'PointweaveError', code, false]);
     assert.ok(seen(event), JSON.stringify(event));
+    assert.ok(!(await shown.page.getByRole('alert').innerText()).includes(event.message), 'a visitor reads a title');
+    await shown.page.getByText('Details').click();
     assert.ok((await shown.page.getByRole('alert').innerText()).includes(event.message));
     if (src === '/none.ply') await shown.keep('error');
   }

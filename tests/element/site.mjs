@@ -29,7 +29,7 @@ const WORKERS = { 'Cross-Origin-Embedder-Policy': 'require-corp' };
 
 /** What lies over the picture, hidden for pixel tests; and no round corners. */
 const PICTURE_ONLY = `point-weave { border-radius: 0 !important }
-  point-weave::part(toolbar), point-weave::part(progress), point-weave::part(error) { visibility: hidden !important }`;
+  point-weave::part(prompt), point-weave::part(toolbar), point-weave::part(progress), point-weave::part(error) { visibility: hidden !important }`;
 
 /** Where pictures are kept for people to look at, when this is set. */
 const PICTURES = process.env.POINTWEAVE_PICTURES;

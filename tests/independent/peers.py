@@ -1,6 +1,8 @@
 """`python peers.py FOLDER`: what laspy, pye57, plyfile, Open3D, trimesh, lib3mf and USD read of Pointweave's files in FOLDER/ours,
-beside truth.json; and their own files of the same cloud and mesh, in FOLDER/theirs, with what each of them holds."""
+beside truth.json; and their own files of the same cloud and mesh, in FOLDER/theirs, with what each of them holds. Of formats that
+Pointweave only reads, what rasterio (GeoTIFF, ASCII grids), pymeshlab (PTX), plyfile and spz (Gaussian splats) read of the same files."""
 
+import importlib.util
 import json
 import os
 import sys
@@ -11,6 +13,9 @@ import numpy as np
 import open3d as o3d
 import plyfile
 import pye57
+import pymeshlab
+import rasterio
+import rasterio.shutil
 import trimesh
 from pxr import Usd, UsdGeom, UsdValidation
 
@@ -398,6 +403,101 @@ def write_lib3mf():
     meant(file, "lib3mf", VERTICES, colors=VERTEX_COLORS, faces=len(TRIANGLES), up=[0, 0, 1], unit="in", tolerance=1e-5, sorted=True)
 
 
+def write_rasters():
+    """Heights with holes; what they are is what GDAL reads."""
+    rows, columns = 30, 40
+    heights = (300 + np.add.outer(np.sin(np.arange(rows) / 5), np.cos(np.arange(columns) / 7))).astype(np.float32)
+    heights[::7, ::5] = -9999
+    turned = rasterio.Affine(2.0, 0.0, 455_000.0, 0.0, -2.5, 5_412_000.0)
+    square = rasterio.Affine(2.0, 0.0, 455_000.0, 0.0, -2.0, 5_412_000.0)
+    kinds = {
+        "stored.tif": dict(), "deflate.tif": dict(compress="deflate", predictor=3), "lzw.tif": dict(compress="lzw", predictor=2, dtype="int16"),
+        "tiled.tif": dict(tiled=True, blockxsize=16, blockysize=16, compress="packbits"), "double.tif": dict(dtype="float64", BIGTIFF="YES"),
+        "heights.asc": dict(driver="AAIGrid"),
+    }
+    for file, how in kinds.items():
+        profile = dict(driver="GTiff", width=columns, height=rows, count=1, dtype="float32", nodata=-9999, transform=turned) | how
+        if profile["driver"] == "AAIGrid":
+            # It writes copies alone, with cells that are square.
+            with rasterio.open(theirs("copied.tif"), "w", **(profile | dict(driver="GTiff", transform=square))) as raster:
+                raster.write(heights, 1)
+            rasterio.shutil.copy(theirs("copied.tif"), theirs(file), driver="AAIGrid")
+            os.remove(theirs("copied.tif"))
+        else:
+            with rasterio.open(theirs(file), "w", **profile) as raster:
+                raster.write(heights.astype(profile["dtype"]), 1)
+        with rasterio.open(theirs(file)) as raster:
+            values = raster.read(1, masked=True)
+            row, column = np.nonzero(~values.mask)
+            east, north = raster.xy(row, column)
+            positions = np.column_stack([east, north, values[row, column]])
+            skipped = {"no-data": int(values.mask.sum())}
+        meant(file, "rasterio", positions, up=[0, 0, 1], skipped=skipped, tolerance=1e-6)
+
+
+def write_ptx():
+    """Two scans; where their points are is what MeshLab reads."""
+    file = "stations.ptx"
+    places = [np.array([10.0, 20.0, 1.5]), np.array([-4.0, 2.0, 1.5])]
+    lines = []
+    for place in places:
+        lines += ["20", "25", " ".join(map(str, place)), "0 1 0", "-1 0 0", "0 0 1"]
+        lines += ["0 1 0 0", "-1 0 0 0", "0 0 1 0", " ".join(map(str, [*place, 1]))]
+        for i in range(500):
+            # Every ninth has no return.
+            point = np.zeros(3) if i % 9 == 4 else POSITIONS[i] + 1
+            color = COLORS[i] if i % 9 != 4 else np.zeros(3, int)
+            lines.append(" ".join(map(str, [*point, round(i / 500, 3), *color])))
+    open(theirs(file), "w").write("\n".join(lines) + "\n")
+    positions, colors = [], []
+    for i, place in enumerate(places):
+        meshes = pymeshlab.MeshSet()
+        meshes.load_new_mesh(theirs(file), meshindex=i, pointsonly=False, pointcull=False, anglecull=False)
+        found = meshes.current_mesh()
+        seen = np.linalg.norm(found.vertex_matrix() - place, axis=1) > 1e-6
+        positions.append(found.vertex_matrix()[seen])
+        colors.append(np.round(255 * found.vertex_color_matrix()[seen, :3]).astype(int))
+    seen = np.arange(500) % 9 != 4
+    intensity = np.tile(np.round(np.arange(500) / 500, 3)[seen], 2)
+    meant(
+        file, "pymeshlab", np.vstack(positions), colors=np.vstack(colors), attributes={"intensity": intensity}, up=[0, 0, 1],
+        skipped={"no-return": 2 * int((~seen).sum())}, tolerance=1e-5,
+    )
+
+
+def write_splats():
+    """Gaussian splats; what they are is what spz and plyfile read."""
+    count = 400
+    harmonic = 0.28209479177387814
+    band = ((COLORS[:count] / 255 - 0.5) / harmonic).astype(np.float32)
+    opacity = np.linspace(-4, 4, count).astype(np.float32)
+    scales = np.full((count, 3), -5, np.float32)
+    rotations = np.tile(np.array([1, 0, 0, 0], np.float32), (count, 1))
+    # The package's own __init__ imports itself; its module does not need it.
+    folder = importlib.util.find_spec("spz").submodule_search_locations[0]
+    [module] = [name for name in os.listdir(folder) if name.startswith("spz.") and name.endswith((".so", ".pyd"))]
+    spec = importlib.util.spec_from_file_location("spz", os.path.join(folder, module))
+    spz = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(spz)
+    file = "splats.spz"
+    spz.GaussianSplat(POSITIONS[:count].astype(np.float32), scales, rotations, opacity, band).save(theirs(file))
+    found = spz.GaussianSplat.load(theirs(file))
+    colors = np.clip(np.round(255 * (0.5 + harmonic * np.asarray(found.colors).reshape(-1, 3))), 0, 255).astype(int)
+    attributes = {"opacity": 1 / (1 + np.exp(-np.asarray(found.alphas, float)))}
+    meant(file, "spz", np.asarray(found.positions).reshape(-1, 3), colors=colors, attributes=attributes, tolerance=1e-6)
+
+    file = "splats.ply"
+    names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
+    table = np.empty(count, dtype=[(name, "f4") for name in names])
+    for name, column in zip(names, [*POSITIONS[:count].T, *band.T, opacity, *scales.T, *rotations.T]):
+        table[name] = column
+    plyfile.PlyData([plyfile.PlyElement.describe(table, "vertex")]).write(theirs(file))
+    vertex = plyfile.PlyData.read(theirs(file))["vertex"]
+    colors = np.clip(np.round(255 * (0.5 + harmonic * np.stack([vertex[f"f_dc_{i}"] for i in range(3)], axis=1))), 0, 255).astype(int)
+    positions = np.stack([vertex[axis] for axis in "xyz"], axis=1)
+    meant(file, "plyfile", positions, colors=colors, attributes={name: vertex[name] for name in names[6:]}, tolerance=1e-9)
+
+
 for number in [0, 1, 2, 3]:
     write_las(f"format{number}.las", "1.2", number)
     write_las(f"format{number}.laz", "1.2", number)
@@ -419,3 +519,6 @@ write_trimesh("body.stl")
 # It writes its bytes as they are, and those of a GLB are linear.
 write_trimesh("body.glb", normals=VERTEX_NORMALS, colors=encoded(VERTEX_COLORS), up=[0, 1, 0], unit="m")
 write_lib3mf()
+write_rasters()
+write_ptx()
+write_splats()

@@ -117,6 +117,29 @@ test('on a phone: fewer points of its own accord, and a message that hides no ti
   assert.ok(sheet.x >= 0 && sheet.x + sheet.width <= 360 && sheet.y + sheet.height <= 740, 'menus fit on the screen');
 });
 
+test('a phone on its side: the page scrolls beside a picture that stays, and nothing is cut off', { timeout: PATIENCE }, async (t) => {
+  const server = await start(t);
+  const phone = { viewport: { width: 740, height: 360 }, deviceScaleFactor: 1, isMobile: true, hasTouch: true };
+  const site = await server.open(phone, undefined, `?src=${server.serve('small.xyz', toXyz(spherePoints(800)))}`);
+  const { page } = site;
+  await site.opened('small.xyz');
+  const inside = async (part) => {
+    const box = await page.locator(part).boundingBox();
+    assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= 740 && box.y + box.height <= 360, `${part}: ${JSON.stringify(box)}`);
+  };
+  for (const part of ['#stage', '#views', '.tools', '#choose']) await inside(part);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 740);
+  const finger = await page.context().newCDPSession(page);
+  const touch = (type, touchPoints) => finger.send('Input.dispatchTouchEvent', { type, touchPoints });
+  await touch('touchStart', [{ x: 560, y: 250 }]);
+  for (let y = 230; y >= 50; y -= 20) await touch('touchMove', [{ x: 560, y }]);
+  await touch('touchEnd', []);
+  await page.waitForFunction(() => scrollY > 100);
+  for (const part of ['#stage', '#views', '.tools']) await inside(part);
+  await page.tap('#paint-menu > summary');
+  await inside('#paint-menu .sheet');
+});
+
 test('a browser without SIMD is told why nothing happens', { timeout: PATIENCE }, async (t) => {
   const noSimd = (page) => page.addInitScript(() => (WebAssembly.validate = () => false));
   const site = await (await start(t)).open({}, noSimd);

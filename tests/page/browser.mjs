@@ -130,7 +130,7 @@ class PageUnderTest {
 
   /** Waits until no job runs any more. */
   async settled() {
-    await this.page.waitForSelector('#app[data-state="ready"]', { timeout: PATIENCE });
+    await this.page.waitForSelector('#app[data-state="ready"]:not([data-painting])', { timeout: PATIENCE });
     await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
   }
 

@@ -1,6 +1,7 @@
 // What is drawn: views, the divider, colours that can be read, sides, and at what cost.
 
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import { colorAt } from '../../pkg/viewer/colormap.js';
 import { PATIENCE, start } from './browser.mjs';
@@ -194,6 +195,41 @@ test('a mesh larger than its scan is seen whole, until somebody has looked aroun
     await page.check('#option-flip');
   });
   assert.ok(silhouette(await site.picture()).area > 0.9 * silhouette(near).area, 'the person has chosen the distance');
+  assert.deepEqual(site.faults, []);
+});
+
+test('the size of the points, the picture as a file, and a poster that the snippet names', { timeout: PATIENCE }, async (t) => {
+  const site = await openScan(t, 'ball.xyz', toXyz(spherePoints(700)));
+  const { page } = site;
+  const area = async () => silhouette(await site.pictureOf('points')).area;
+  const size = async (value) => {
+    await page.click('#paint-menu > summary');
+    await page.fill('#point-size', String(value));
+    await page.keyboard.press('Escape');
+    await site.settled();
+  };
+  const usual = await area();
+  await size(-1);
+  const small = await area();
+  await size(0);
+  assert.equal(await area(), usual);
+  assert.ok(small < 0.7 * usual, `${small} of ${usual}`);
+
+  const saved = async (button) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
+    return [download.suggestedFilename(), await readFile(await download.path())];
+  };
+  await site.show('mesh');
+  const [name, bytes] = await saved('#picture');
+  assert.equal(name, 'ball.png');
+  const wide = await page.$eval('#canvas', (canvas) => [canvas.width, canvas.height]);
+  assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], wide);
+  await page.click('#share > summary');
+  assert.doesNotMatch(await page.inputValue('#share-embed'), /poster/);
+  const [poster, picture] = await saved('#poster');
+  assert.equal(poster, 'ball-poster.webp');
+  assert.equal(picture.toString('latin1', 8, 12), 'WEBP');
+  assert.match(await page.inputValue('#share-embed'), / poster="ball-poster\.webp"/);
   assert.deepEqual(site.faults, []);
 });
 

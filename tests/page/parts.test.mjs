@@ -9,9 +9,9 @@ import { UNKNOWN, colorAt, colorize } from '../../pkg/viewer/colormap.js';
 import { localSpacing } from '../../pkg/viewer/density.js';
 import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
 import { likelyUp } from '../../pkg/viewer/upright.js';
-import { countHoles } from '../../www/src/look/holes.js';
-import { CONTROLS, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
+import { CONTROLS, PLACES, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
+import { printingWords, solidOf } from '../../www/src/results/printing.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
 
 /** What people without red, green or blue cones see of linear colours (Viénot, 1999; Brettel, 1997, one half plane). */
@@ -58,21 +58,6 @@ test('the spacing of a plane of points is found, whichever way it lies', () => {
   }
 });
 
-test('holes are counted by their rims', () => {
-  const grid = (has) => {
-    const triangles = [];
-    for (let x = 0; x < 8; x++) for (let y = 0; y < 8; y++) {
-      const v = (dx, dy) => (x + dx) * 9 + y + dy;
-      if (has(x, y)) triangles.push(v(0, 0), v(1, 0), v(1, 1), v(0, 0), v(1, 1), v(0, 1));
-    }
-    return Uint32Array.from(triangles);
-  };
-  assert.equal(countHoles(grid(() => true), 81), 1);
-  assert.equal(countHoles(grid((x, y) => !(x === 2 && y === 2)), 81), 2);
-  assert.equal(countHoles(grid((x, y) => !(y === 4) && !(x === 2 && y === 2) && !(x === 6 && y === 6)), 81), 4);
-  assert.equal(countHoles(Uint32Array.of(0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2), 4), 0);
-});
-
 test('sharp places are on the edges of the part, and hardly anywhere on the duck', async () => {
   const share = (flags) => flags.reduce((sum, is) => sum + is, 0) / flags.length;
   const [part, duck] = await Promise.all(['part', 'duck'].map((model) => sample(model, { count: 12_000 })));
@@ -88,6 +73,7 @@ test('sharp places are on the edges of the part, and hardly anywhere on the duck
 });
 
 test('settings: defaults are the package\'s, and an address brings back what was chosen', () => {
+  assert.deepEqual(Object.values(PLACES).flat().sort(), Object.keys(CONTROLS).sort(), 'each has one place');
   for (const key of Object.keys(CONTROLS)) assert.equal(defaultOf(key), DEFAULTS[CONTROLS[key].in][key], key);
   assert.equal(TARGETS.ratio.start, DEFAULTS.reduce.target.ratio);
   const chosen = new Settings();
@@ -127,6 +113,24 @@ test('what was surveyed stands on its z, and so does what is flat', () => {
   assert.equal(likelyUp({ origin: [5e5, 5e6, 0] }, [3, 3, 3]), 'z');
   assert.equal(likelyUp({ seenFromAbove: true }, [24, 29, 36]), 'z');
   assert.equal(likelyUp({ up: [0.1, -0.9, 0.2] }, [10, 20, 2]), '-y', 'what the data name goes first');
+});
+
+test('what a printer asks of a mesh', () => {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, i >> 2].map((bit, axis) => 100 + bit * (axis + 1)));
+  const faces = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+  const mesh = (indices, report = {}) => ({
+    positions: Float32Array.from(corners.flat()), indices: Uint32Array.from(indices), report: { boundaryEdges: 0, nonManifoldEdges: 0, holes: [], ...report },
+  });
+  const box = solidOf(mesh(faces));
+  assert.deepEqual([box.closed, box.size], [true, [1, 2, 3]]);
+  assert.ok(Math.abs(box.volume - 6) < 1e-9);
+  assert.deepEqual(printingWords(box, 'cm'), { ready: true, words: 'Watertight, ready for 3D printing: 10 × 20 × 30 mm, 6 cm³.' });
+  assert.match(printingWords(box, undefined).words, /1 × 2 × 3 mm, 6 mm³, if a coordinate of 1 is a millimetre/);
+  assert.match(printingWords(solidOf(mesh(faces.toReversed())), 'mm').words, /inside out/);
+  const holes = [{ diameter: 0.1, closed: false }, { diameter: 0.1, closed: true }, { diameter: 0.2, closed: false }];
+  assert.deepEqual(printingWords(solidOf(mesh(faces.slice(6), { boundaryEdges: 8, holes })), 'mm'), { ready: false, words: 'Not ready for 3D printing: it has 2 holes or open borders.' });
+  assert.match(printingWords(solidOf(mesh(faces, { nonManifoldEdges: 1 })), 'mm').words, /not watertight/);
+  assert.match(printingWords(box, 'deg').words, /degrees/);
 });
 
 test('what is kept, in words', () => {

@@ -44,7 +44,11 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
   });
 
   await t.test('every option has a control, and one that only shapes the surface does not reduce again', async () => {
+    assert.ok(await page.isVisible('#option-boundary') && await page.isVisible('#option-outliers'), 'what most scans need is in sight');
     await page.click('#more > summary');
+    assert.equal(await page.isVisible('#option-fuzzifier'), false, 'an expert looks further');
+    assert.equal(await page.$('#target-kind [value="flatness"]'), null);
+    await page.click('#expert > summary');
     for (const key of Object.keys(CONTROLS)) assert.ok(await page.isVisible(`#option-${key}`), key);
     assert.ok((await stages()).includes('cluster'));
     await site.remade(() => page.selectOption('#option-boundary', 'closed'));
@@ -75,6 +79,9 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     await site.remade(() => page.fill('#keep-field', '777'));
     assert.equal(await site.number('outputPoints'), 777);
     await site.remade(() => page.selectOption('#target-kind', 'ratio'));
+    assert.equal(await hash(), `#ratio=${Number((777 / count).toPrecision(3))}`);
+    await site.remade(() => page.fill('#keep-field', '33.3'));
+    assert.equal(await hash(), '#ratio=0.333', 'as it is shown, without the digits of a binary fraction');
     await site.remade(() => page.selectOption('#target-kind', 'tolerance'));
     assert.match(await page.innerText('#keep-count'), new RegExp(`within ${(1e-3 * DIAGONAL).toPrecision(3)}`));
     const within = await site.number('outputPoints');
@@ -88,6 +95,13 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     await site.made();
     await page.fill('#keep-field', '250');
     assert.equal(await page.$eval('#keep-field', (field) => field.validity.valid), false);
+    assert.equal(await page.getAttribute('#keep-field', 'aria-invalid'), 'true');
+    assert.equal(await page.innerText('#keep-error'), 'This takes a number above 0 %, up to 100 %.');
+    await page.fill('#option-fuzzifier', '1');
+    assert.equal(await page.innerText('#option-fuzzifier-error'), 'This takes a number above 1, up to 100.');
+    await page.fill('#option-fuzzifier', '');
+    assert.equal(await page.getAttribute('#option-fuzzifier', 'aria-invalid'), null);
+    assert.equal(await page.isVisible('#option-fuzzifier-error'), false);
     assert.equal(await page.getAttribute('#app', 'data-state'), 'ready');
   });
 
@@ -139,7 +153,7 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     const header = (element) => (bytes) => Number(new RegExp(`element ${element} (\\d+)`).exec(bytes.toString('latin1', 0, 2000))[1]);
     const points = async (bytes) => (await read(bytes)).positions.length / 3;
     const holds = {
-      'mesh-glb': [glb, triangles], 'mesh-ply': [header('face'), triangles], 'mesh-obj': [count(/^f /gm), triangles],
+      'mesh-glb-small': [glb, triangles], 'mesh-glb': [glb, triangles], 'mesh-ply': [header('face'), triangles], 'mesh-obj': [count(/^f /gm), triangles],
       'mesh-stl': [(bytes) => bytes.readUInt32LE(80), triangles], 'mesh-3mf': [async (bytes) => (await read(bytes)).faces, triangles],
       'mesh-usdz': [(bytes) => count(/\d, (?=\d)/g)(/faceVertexCounts = \[(.*?)\]/.exec(bytes.toString('latin1'))?.[1] ?? '') + 1, triangles],
       'reduced-ply': [header('vertex'), kept], 'reduced-glb': [glb, kept], 'reduced-xyz': [count(/^[-\d]/gm), kept],
@@ -156,12 +170,33 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
       assert.equal(bytes.length, size, id);
       assert.equal(await holding(bytes), expected, id);
     }
-    // The one button takes what most people need.
-    assert.match(await page.innerText('#save'), /GLB/);
+    // The one button takes what most people need: small, with what it would be else said below.
+    const [small, plain] = await Promise.all(['mesh-glb-small', 'mesh-glb'].map(async (id) => Number(await page.getAttribute(`#save-${id} data`, 'value'))));
+    assert.ok(small < 0.5 * plain, `${small} of ${plain} bytes`);
+    assert.match(await page.innerText('#save'), new RegExp(`GLB · ${Math.ceil(small / 1e3)} kB`));
+    assert.match(await page.innerText('#save-note'), new RegExp(`has ${Math.ceil(plain / 1e3)} kB`));
     const saved = page.waitForEvent('download');
     await page.click('#save');
     assert.equal((await saved).suggestedFilename(), 'bowl-mesh.glb');
     mesh = await readFile(await (await saved).path());
+  });
+
+  await t.test('3D printing is offered where the mesh is watertight, with its size; else it is said what is missing', async () => {
+    assert.equal(await page.innerText('#printing'), 'Not ready for 3D printing: it has an open border.');
+    assert.doesNotMatch(await page.innerText('#format-list'), /3D printing/);
+    await site.remade(() => page.click('#close-holes'));
+    const words = await page.innerText('#printing');
+    const [, across, deep, high, volume] = /^Watertight, ready for 3D printing: ([\d.]+) × ([\d.]+) × ([\d.]+) mm, ([\d.]+) mm³, if/.exec(words)?.map(Number) ?? [];
+    for (const [found, truth] of [[across, WIDTH], [deep, WIDTH], [high, 1 + RIM], [volume, (Math.PI * (1 + RIM) ** 2 * (2 - RIM)) / 3]]) {
+      assert.ok(Math.abs(found / truth - 1) < 0.25, `${words}: ${found} for ${truth}`);
+    }
+    assert.equal(await page.isVisible('#close-holes'), false);
+    await page.waitForSelector('#save-mesh-stl');
+    assert.match(await page.innerText('#save-mesh-stl'), /for 3D printing/);
+    await page.click('#standing > summary');
+    await page.selectOption('#stand-unit', 'in');
+    await page.waitForFunction(() => /mm, [\d.]+ cm³\.$/.test(document.querySelector('#printing').textContent));
+    assert.match(await page.innerText('#printing'), new RegExp(`: ${(25.4 * across).toFixed(1).slice(0, 3)}`));
   });
 
   await t.test('the snippet shows the saved mesh in another page', async () => {
@@ -177,8 +212,15 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
     };
     const own = await server.open({ serviceWorkers: 'block' }, (opened) => opened.route('**/*', answer), 'own.html');
     await own.page.waitForFunction(() => document.querySelector('point-weave').loaded, null, { timeout: PATIENCE });
-    assert.deepEqual(own.faults, []);
     assert.equal(await own.page.getAttribute('point-weave', 'alt'), 'bowl.ply, a 3D model');
+    assert.deepEqual(own.faults, []);
+    await own.page.context().close();
+  });
+
+  await t.test('a small file that was saved can be opened again', async () => {
+    await site.drop('bowl-mesh.glb', mesh);
+    await site.opened('bowl-mesh.glb');
+    assert.match(await page.innerText('#caption-detail'), /taken from [\d,]+ faces/);
   });
 
   assert.deepEqual(site.faults, []);

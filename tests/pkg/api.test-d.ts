@@ -10,6 +10,7 @@ import type * as browser from '../../pkg/index.js';
 import type * as node from '../../pkg/index.node.js';
 import type * as directBrowser from '../../pkg/direct.js';
 import type * as directNode from '../../pkg/direct.node.js';
+import type { Engine as Made } from '../../pkg/engine/engine.js';
 import { load, type Core } from 'pointweave/core';
 
 type Declared = typeof import('pointweave');
@@ -27,6 +28,12 @@ type Functions = Omit<Declared, 'PointweaveError'>;
 export function conform(web: typeof browser, server: typeof node): [Functions, Functions] {
   return [web, server];
 }
+
+type Equal<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ? 1 : 2 ? true : false;
+type Method = Exclude<keyof Engine, 'build' | 'threads' | 'reason'>;
+/** The module behind an engine declares the same: `any` in it would agree with everything. */
+export const behind: { [name in Method]: Equal<Parameters<Made[name]>, Parameters<Engine[name]>> } & { [name in Method]: Equal<ReturnType<Made[name]>, ReturnType<Engine[name]>> } =
+  { prepare: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
 
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });

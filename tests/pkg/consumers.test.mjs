@@ -8,7 +8,8 @@ import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { read, sample, write } from 'pointweave';
 import { blocks, painted } from '../element/site.mjs';
-import { silhouette } from '../page/pictures.mjs';
+import { ball, glb } from '../element/files.mjs';
+import { meanColor, silhouette } from '../page/pictures.mjs';
 import { ISOLATED, newPage, serveFolders } from './browser.mjs';
 import { CONSUMERS, install, pack } from './tarball.mjs';
 
@@ -29,7 +30,7 @@ const expected = JSON.parse((await build('node', 'main.js')).stdout);
 async function open(t, address) {
   const page = await newPage(t);
   const elsewhere = [];
-  page.on('request', (request) => request.url().startsWith(address) || /^(data|blob):/.test(request.url()) || elsewhere.push(request.url()));
+  page.on('request', (request) => request.url().startsWith(new URL('/', address).href) || /^(data|blob):/.test(request.url()) || elsewhere.push(request.url()));
   await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.result, undefined, { timeout: 60_000 });
   const said = await page.evaluate(() => JSON.parse(document.documentElement.dataset.result));
@@ -143,4 +144,43 @@ test("<model-viewer> shows the command line's GLB", async (t) => {
     assert.ok(Math.abs(length - expected) < 1e-4 * expected, `${length} and not ${expected} along axis ${axis}`);
   }
   await checkPictures(page, 'model-viewer');
+});
+
+for (const framework of ['tsx', 'vue', 'svelte']) {
+  test(`the snippet of docs/embed.md in ${framework} shows a model and hears of it`, async (t) => {
+    const { bundle } = await import(new URL('frameworks/build.js', CONSUMERS).href);
+    const document = await readFile(new URL('node_modules/pointweave/docs/embed.md', CONSUMERS), 'utf8');
+    const [component] = blocks(document, framework);
+    await bundle(framework, component);
+    const files = folder(`frameworks/dist/${framework}`);
+    await writeFile(new URL('duck.glb', files), await glb([ball(20)]));
+    const { page, said } = await open(t, await serveFolders(t, {}, [files, CONSUMERS]));
+    assert.match(said.words, /^1600( triangles)?$/);
+    assert.equal(await page.evaluate(() => document.querySelector('point-weave').controls), true);
+    await checkPictures(page, 'point-weave');
+  });
+}
+
+/** How many grey values a colour may differ by from what <model-viewer> shows: of mirrors, which show the studio itself, more. */
+const BALLS = { white: [1, 0, 0.9, 6], grey: [0.2, 0, 0.9, 8], metal: [0.9, 1, 0.25, 20] };
+
+test('the element in one file is as bright as <model-viewer> beside it', async (t) => {
+  const files = folder('beside/dist');
+  await mkdir(files, { recursive: true });
+  for (const [name, [color, metallicFactor, roughnessFactor]] of Object.entries(BALLS)) {
+    const material = { pbrMetallicRoughness: { baseColorFactor: [color, color, color, 1], metallicFactor, roughnessFactor } };
+    await writeFile(new URL(`${name}.glb`, files), await glb([{ ...ball(32), material }]));
+  }
+  const address = await serveFolders(t, {}, [folder('beside'), files, CONSUMERS]);
+  const { page } = await open(t, `${address}?names=${Object.keys(BALLS)}`);
+  await page.waitForTimeout(1500); // model-viewer fades in
+  for (const [name, [, , , most]] of Object.entries(BALLS)) {
+    const greys = [];
+    for (const tag of ['model-viewer', 'point-weave']) {
+      const png = await page.locator(`${tag}[alt=${name}]`).screenshot({ animations: 'disabled' });
+      greys.push(Math.round(meanColor(png, silhouette(png))[0]));
+    }
+    t.diagnostic(`${name}: ${greys.join(' and ')}`);
+    assert.ok(Math.abs(greys[0] - greys[1]) <= most, `${name}: ${greys.join(' and ')}`);
+  }
 });

@@ -3,6 +3,8 @@
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { availableParallelism } from 'node:os';
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
 import test from 'node:test';
 import { setImmediate } from 'node:timers/promises';
 import { promisify } from 'node:util';
@@ -150,6 +152,19 @@ test('the wasm files can lie elsewhere', async (t) => {
     assert.equal((await engine.inspect(sphere(500))).count, 500);
   }
   assert.equal((await engineFor(t, { threads: 2, wasmUrl: folder })).build, 'threads');
+});
+
+test('the wasm files can lie on a server, in Node too', async (t) => {
+  const wasm = await readFile(new URL('../../pkg/wasm/single/pointweave_bg.wasm', import.meta.url));
+  const server = createServer(({ url }, answer) => (url === '/wasm/single/pointweave_bg.wasm' ? answer.end(wasm) : answer.writeHead(404).end()));
+  await new Promise((resolve) => server.listen(0, 'localhost', resolve));
+  t.after(() => server.close());
+  const place = `http://localhost:${server.address().port}`;
+  const engine = await engineFor(t, { threads: 1, wasmUrl: `${place}/wasm` });
+  assert.equal((await engine.inspect(sphere(500))).count, 500);
+  const error = await rejection(createEngine({ threads: 1, wasmUrl: `${place}/nowhere` }));
+  assert.equal(error.code, 'load-failed');
+  assert.match(error.message, /nowhere\/single\/pointweave_bg\.wasm did not load: 404/);
 });
 
 test('concurrent first calls start one host', async () => {

@@ -67,6 +67,19 @@ test('arguments of the wrong kind are bad input', async () => {
   for (const data of [undefined, null, 'ply', [1, 2, 3]]) await rejects(read(data), 'bad-input');
 });
 
+test('arrays that were handed over are told from empty ones', async () => {
+  const { positions, colors } = { ...sphere(10), colors: new Uint8Array(30) };
+  await reduce({ positions, colors }, { transfer: true });
+  for (const call of [reduce, reconstruct, inspect, write]) await rejects(call({ positions }), 'detached');
+  const error = await rejects(reduce({ positions: sphere(10).positions, colors }), 'detached');
+  assert.match(error.message, /^the memory of colors was handed over/);
+  const bytes = text('1 2 3\n4 5 6\n7 8 9\n');
+  await read(bytes, { transfer: true, format: 'xyz' });
+  await rejects(read(bytes, { format: 'xyz' }), 'detached');
+  await rejects(read(bytes.buffer, { format: 'xyz' }), 'detached');
+  await rejects(reduce({ positions: new Float32Array(0) }), 'empty-cloud');
+});
+
 test('points beyond what wasm can address run out of memory, and the next call works', async (t) => {
   const engine = await engineFor(t, { threads: 1 });
   const positions = new Float32Array(2 ** 29 + 1);

@@ -69,6 +69,11 @@ test('an OBJ file has the colours of pictures beside it', async () => {
     assert.deepEqual([...cloud.colors.subarray(0, 3)], [10, 200, 30]);
     assert.equal(cloud.file.missing, undefined);
   }
+  // A library that was renamed with its mesh is the only one there.
+  const renamed = [new File([MTL], 'my chair.mtl'), new File([files['photo.png']], 'photo.png')];
+  assert.deepEqual([...(await read(text(OBJ), { beside: renamed })).colors.subarray(0, 3)], [10, 200, 30]);
+  const two = [...renamed, new File([MTL], 'other.mtl')];
+  assert.deepEqual((await read(text(OBJ), { beside: two })).file.missing, ['scan.mtl']);
   const without = await read(text(OBJ));
   assert.deepEqual([without.colors, without.file.missing], [undefined, ['scan.mtl']]);
   const broken = await read(text(OBJ), { beside: (name) => (name === 'scan.mtl' ? text(MTL) : text('no picture')) });
@@ -84,6 +89,9 @@ test('the command line finds them in the folder', async (t) => {
   const { stdout } = await run('node', [CLI, 'inspect', join(folder, 'scan.obj')]);
   assert.match(stdout, /also has +colours, normals/);
   assert.match(stdout, /faces +1, 100,000 points taken from them/);
+  await writeFile(join(folder, 'my chair.obj'), OBJ.replace('scan.mtl', 'gone.mtl'));
+  await writeFile(join(folder, 'my chair.mtl'), MTL);
+  assert.match((await run('node', [CLI, 'inspect', join(folder, 'my chair.obj')])).stdout, /also has +colours, normals/);
   const out = join(folder, 'few.stl.ply');
   const { stderr } = await run('node', [CLI, 'reduce', join(folder, 'scan.obj'), '-o', out, '--unit', 'in', '--up', 'y', '--to-unit', 'mm', '--to-up', 'z', '--count', '500']);
   assert.match(stderr, /taken from 1 faces/);

@@ -29,6 +29,10 @@ test('an unknown option is named, with the nearest name', async () => {
   const moved = await badOption(reduce(cloud, { ratio: 0.5 }));
   assert.match(moved.message, /did you mean target: \{ ratio \}\?/);
 
+  const [target, ratio] = [await badOption(reconstruct(cloud, { target: { ratio: 0.5 } })), await badOption(reconstruct(cloud, { ratio: 0.5 }))];
+  assert.match(target.message, /did you mean reduce: \{ target \}\?/);
+  assert.match(ratio.message, /did you mean reduce: \{ target: \{ ratio \} \}\?/);
+
   const strange = await badOption(reduce(cloud, { purple: 1 }));
   assert.doesNotMatch(strange.message, /did you mean/);
   assert.ok(strange.expected.includes('target'));
@@ -68,7 +72,8 @@ test('every wrong value is named, with what was expected', async () => {
   await badOption(sample('duck', { count: 0 }));
   await badOption(sample('duck', { count: 1e7 + 1 }));
   await badOption(sample('duck', { noise: 0.02 }));
-  for (const options of [{ threads: 0 }, { threads: 'many' }, { worker: 1 }, { wasmUrl: 5 }, { wasmUrl: { double: 'x' } }, { workers: true }]) {
+  for (const options of [{ threads: 0 }, { threads: 'many' }, { worker: 1 }, { wasmUrl: 5 }, { wasmUrl: { double: 'x' } },
+    { wasmUrl: '/wasm/single/pointweave_bg.wasm' }, { wasmUrl: new URL('https://cdn.example/a.wasm?v=2') }, { workers: true }]) {
     await badOption(createEngine(options));
   }
 });

@@ -253,6 +253,9 @@ test('XYZ', async () => {
   const { attributes } = new XYZLoader().parse(text(await write({ positions, colors }, { format: 'xyz' })));
   assert.deepEqual(attributes.position.array, positions);
   assert.deepEqual(srgb([...attributes.color.array]), colors);
+  // Readers such as trimesh's take every word for a number; where there are attributes, a comment has their names.
+  const words = text(await write({ positions, colors }, { format: 'xyz' })).trim().split(/\s+/).map(Number);
+  assert.ok(words.length === 2 * positions.length && words.every(Number.isFinite));
   for (const result of [mesh, farPoints]) {
     const rows = text(await write(result, { format: 'xyz' })).trimEnd().split('\n').slice(1).map((row) => row.split(' ').map(Number));
     assert.deepEqual(Float64Array.from(rows.flatMap((row) => row.slice(0, 3))), world(result));

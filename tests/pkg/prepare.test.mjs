@@ -38,7 +38,7 @@ test('a recipe leaves the object with all that is its own, and says what it drop
   const { cloud, kept, labels, steps } = await prepare(scan, STEPS);
   assert.ok(labels instanceof Uint8Array && labels.length === count);
   const right = labels.reduce((sum, label, i) => sum + (label === (i < 4000 ? 0 : i < count - 500 ? 1 : 2)), 0);
-  assert.ok(right >= 0.998 * count, `${right} of ${count}`);
+  assert.ok(right >= 0.99 * count, `${right} of ${count}`);
   assert.deepEqual([...kept], [...labels.keys()].filter((i) => labels[i] === 0));
   assert.ok(cloud.positions instanceof Float32Array);
   kept.forEach((i, k) => {
@@ -78,7 +78,7 @@ test('a reduction and a mesh after a recipe are those of what it leaves, told of
 });
 
 test('regions cut as they say, each with what those before left', async () => {
-  const camera = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 20]; // from far above z: x and y, a twentieth of them
+  const camera = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 20]; // a twentieth of x and y
   const steps = [
     { step: 'box', min: [-20, low + 0.1, -20], max: [20, 20, 20] },
     { step: 'sphere', center: [9, low + 1.2, 9], radius: 2, keep: false },

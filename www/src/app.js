@@ -2,6 +2,8 @@ import { addressOf, readAddress } from './session/address.js';
 import { Comparison } from './controls/comparison.js';
 import { Controls } from './controls/controls.js';
 import { announce, byId } from './dom.js';
+import { DroppedList } from './controls/dropped-list.js';
+import { sortOut } from './session/dropped.js';
 import { acceptFiles } from './session/files.js';
 import * as format from './results/format.js';
 import { helpDialog } from './help.js';
@@ -9,6 +11,7 @@ import { describeKeys, listenToKeys } from './keys.js';
 import { Look } from './look/look.js';
 import { tendMenus } from './menus.js';
 import { MessageCard } from './results/messages.js';
+import { offerPictures } from './session/pictures.js';
 import { Numbers } from './results/numbers.js';
 import { ProgressBar } from './results/progress.js';
 import { isSample } from './controls/samples.js';
@@ -18,12 +21,16 @@ import { ColumnChooser } from './session/column-chooser.js';
 import { Standing } from './controls/standing.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
+import { Shown } from './state/shown.js';
+import { forget, keep, keepsSome, kept } from './state/keeping.js';
+import { Steps } from './controls/steps.js';
 import { meaningOf } from './controls/targets.js';
 
 /**
  * @import { Key } from './keys.js'
  * @import { Outcome, Scan, State } from './session/session.js'
  * @import { SampleName } from './controls/samples.js'
+ * @import { Edits, From, Value } from './state/shown.js'
  */
 
 /** @type {Record<string, [number, number, number]>} */
@@ -33,13 +40,15 @@ const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y':
 export class App {
   #root = byId('app', HTMLElement);
   #session = new Session();
-  #look = new Look(this.#root, () => this.#noteAddress(), () => this.#stand({ up: this.#look.upright }));
+  #shown = new Shown(addressOf);
+  #steps = new Steps(this.#shown);
+  #look = new Look(this.#root, () => this.#shown.change({ look: this.#look.state }, { step: false }), () => this.#stand({ up: this.#look.upright }));
   #standing = new Standing((stand) => this.#stand(stand), (chosen) => {
     if (chosen) this.#side.stop();
     this.#look.choosePiece(chosen);
   });
   #numbers = new Numbers();
-  #side = new SideCard((triangle) => this.#session.flip(triangle), (chosen) => {
+  #side = new SideCard((triangle) => this.#flip(triangle), (chosen) => {
     if (chosen) this.#standing.stop();
     this.#look.choosePiece(chosen);
   });
@@ -47,9 +56,12 @@ export class App {
   #run = byId('run', HTMLButtonElement);
   #choose = acceptFiles((files) => this.#openFiles(files));
   #columns = new ColumnChooser();
+  /** The files that came in together last. @type {import('./session/dropped.js').Dropped[]} */
+  #together = [];
+  #dropped = new DroppedList((dropped) => this.#openOne(dropped.file));
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
-  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name));
+  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
   #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, 'comparison'));
 
@@ -61,45 +73,80 @@ export class App {
 
   /** Opens what the address asks for, by default the duck. */
   start() {
+    const recalled = this.#shown.recall();
+    if (recalled) return this.#follow(recalled);
     const { words, sample, src, view, paint } = readAddress();
     this.#session.settings.read(words);
     this.#look.wish(view, paint);
     this.#controls.show(this.#session.target, 0);
-    if (src && !sample) return this.#session.openAddress(src);
-    return this.#session.openSample(sample ?? 'duck');
+    if (!src || sample) return this.#session.openSample(sample ?? 'duck');
+    return this.#session.openAddress(src);
   }
 
-  #openFiles(/** @type {File[]} */ files) {
-    if (!files.length) return;
-    // A mesh may name its material library and pictures, which come along.
-    const first = files.find((file) => !/\.(mtl|png|jpe?g|webp)$/i.test(file.name)) ?? files[0];
-    const beside = files.filter((file) => file !== first);
-    if (beside.length > 0) announce(`One scan at a time: opening ${first.name}`);
-    return this.#session.openFile(first, { beside });
+  #openFiles(/** @type {{ file: File, path: string }[]} */ files) {
+    if (!files.length) return this.#message.show('empty-folder', '');
+    const { first, all } = sortOut(files);
+    this.#together = all;
+    this.#dropped.offer(all);
+    return this.#openOne(first.file);
+  }
+
+  /** Opens a file of those that came in together; a mesh may name the others. @param {File} file @param {string[]} [columns] */
+  #openOne(file, columns) {
+    this.#message.hide();
+    const beside = this.#together.map((other) => other.file).filter((other) => other !== file);
+    const named = this.#together.filter(({ kind, file: other }) => kind === 'beside' && other !== file).map((other) => other.file);
+    return this.#session.openFile(file, { columns, beside, key: keep(file, named) });
+  }
+
+  /** Shows another value: a step of the history, or what a reload finds. */
+  async #follow(/** @type {Value} */ { scan, settings, look, edits }) {
+    const session = this.#session;
+    session.settings.take(settings);
+    this.#look.wish(look.view, look.paint);
+    this.#controls.show(session.target, session.scan?.count ?? 0);
+    if (session.scan && same(scan, fromOf(session.scan))) {
+      this.#edit(edits);
+      await session.apply();
+      if (session.outcome && !session.busy && !same(session.turned, edits.turned ?? [])) session.turn(edits.turned ?? []);
+    } else if (scan && 'key' in scan) {
+      const found = await kept(scan.key);
+      if (found) return session.openFile(found.file, { ...scan, beside: found.beside });
+      this.#message.show('kept-no-more', scan.key, { standIn: !session.scan });
+      if (!session.scan) await session.openSample('duck');
+    } else if (scan && 'src' in scan) await session.openAddress(scan.src);
+    else await session.openSample(scan?.model ?? 'duck');
   }
 
   #listenToSession() {
-    const on = (/** @type {string} */ type, /** @type {(detail: any) => void} */ act) =>
-      this.#session.addEventListener(type, (event) => act(/** @type {CustomEvent} */ (event).detail));
-    on('state', (/** @type {State} */ state) => this.#enter(state));
-    on('opened', (/** @type {Scan} */ scan) => this.#opened(scan));
-    on('progress', (progress) => this.#progress.update(progress));
-    on('made', (/** @type {Outcome} */ outcome) => this.#made(outcome));
-    on('turned', ({ outcome, piece }) => this.#turned(outcome, piece));
-    on('cancelled', () => this.#cancelled());
-    on('failed', ({ error, title, given }) => this.#failed(error, title, given));
+    const session = this.#session;
+    session.on('state', (state) => this.#enter(state));
+    session.on('opened', (scan) => this.#opened(scan));
+    session.on('progress', (progress) => this.#progress.update(progress));
+    session.on('made', (outcome) => this.#made(outcome));
+    session.on('turned', (outcome) => this.#turned(outcome));
+    session.on('cancelled', () => this.#cancelled());
+    session.on('failed', (failure) => this.#failed(failure));
+    this.#shown.on('changed', (value) => this.#noteAddress(value));
+    this.#shown.on('moved', (value) => (value ? this.#follow(value) : this.#addressChanged()));
   }
 
   #listenToControls() {
     byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
     this.#run.addEventListener('click', () => this.#session.run());
     for (const button of this.#samples()) {
-      button.addEventListener('click', () => this.#session.openSample(/** @type {SampleName} */ (button.dataset.sample)));
+      button.addEventListener('click', () => this.#openSample(/** @type {SampleName} */ (button.dataset.sample)));
     }
-    addEventListener('hashchange', () => this.#addressChanged());
+    byId('forget', HTMLButtonElement).addEventListener('click', async () => {
+      await forget();
+      await this.#sayKept();
+    });
+    const savePicture = offerPictures((type, quality) => this.#look.picture(type, quality), () => this.#session.scan?.file ?? 'scan', (name) => this.#sharing.posted(name));
     /** @type {Key[]} */
     const keys = [
       ...this.#look.keys,
+      ...this.#steps.keys,
+      { key: 's', does: 'Save the picture', act: savePicture },
       { key: 'o', does: 'Open a scan from this device', act: this.#choose },
       { key: '?', does: 'This list', act: () => showHelp() },
       { key: 'Escape', shown: 'Esc', does: 'Close a message or menu, cancel the work', act: () => this.#escape() },
@@ -109,11 +156,15 @@ export class App {
     listenToKeys(keys);
   }
 
+  #openSample(/** @type {SampleName} */ model) {
+    this.#message.hide();
+    return this.#session.openSample(model);
+  }
+
   #enter(/** @type {State} */ state) {
     this.#root.dataset.state = state;
     this.#run.hidden = true;
     if (state === 'reading') {
-      this.#message.hide();
       this.#progress.start('Reading the scan');
     } else if (state === 'working') {
       this.#numbers.stale();
@@ -130,19 +181,23 @@ export class App {
     byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
     this.#showSize(scan);
     this.#look.opened(scan);
+    const known = same(fromOf(scan), this.#shown.value.scan);
+    if (known) this.#edit(this.#shown.value.edits);
     this.#showStanding(scan);
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
+    this.#dropped.opened(scan.given);
     this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
-    this.#noteAddress();
+    this.#note(known ? {} : { scan: fromOf(scan), edits: {} }, { step: !known });
+    this.#sayKept();
   }
 
   /** Lets a person say what the columns of a table are. */
   #offerColumns(/** @type {Scan} */ { given, cloud }) {
     const { file, columns } = cloud;
-    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#session.openFile(given, { columns: chosen }));
+    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#openOne(given, chosen));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -153,31 +208,50 @@ export class App {
     this.#side.show(mesh, { all: this.#flipped, piece: false });
     this.#saving.offer(outcome);
     this.#comparison.made(outcome);
+    const { turned = [] } = this.#shown.value.edits;
+    if (turned.length) this.#session.turn(turned);
     const kept = `Done: ${format.points(reduced.positions.length / 3)} kept`;
     announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
   }
 
-  /** @param {Outcome} outcome @param {boolean} piece  not all of it */
-  #turned(outcome, piece) {
-    this.#look.made(outcome);
-    this.#side.show(outcome.mesh, { all: this.#flipped, piece });
-    this.#saving.offer(outcome);
-    this.#controls.show(this.#session.target, outcome.scan.count);
-    this.#noteAddress();
-    announce(piece ? 'The piece was flipped' : 'The mesh was flipped');
+  /** A person turns a piece over, or all. @param {number} [triangle] */
+  #flip(triangle) {
+    const session = this.#session;
+    if (triangle === undefined) session.flip();
+    else session.turn([...session.turned, triangle]);
+    this.#note({ edits: { ...this.#shown.value.edits, turned: session.turned } });
+    announce(triangle === undefined ? 'The mesh was flipped' : 'The piece was flipped');
   }
 
-  /** Which way is up, and the unit, as a person said it: of the picture, the scan and whatever is saved of it. */
-  #stand(/** @type {import('./controls/standing.js').Stand} */ { up, unit }) {
-    const { scan, outcome } = this.#session;
+  #turned(/** @type {Outcome} */ outcome) {
+    this.#look.made(outcome);
+    this.#side.show(outcome.mesh, { all: this.#flipped, piece: this.#session.turned.length > 0 });
+    this.#saving.offer(outcome);
+    this.#controls.show(this.#session.target, outcome.scan.count);
+  }
+
+  /** Which way is up, and the unit, as a person says it. */
+  #stand(/** @type {import('./controls/standing.js').Stand} */ stand) {
+    if (!this.#session.scan) return;
+    const edits = { ...this.#shown.value.edits, ...stand };
+    this.#edit(edits);
+    this.#note({ edits });
+  }
+
+  /** Which way is up, and the unit: of the picture, the scan and whatever is saved of it. What nobody said is as the file says it. */
+  #edit(/** @type {Edits} */ { up, unit }) {
+    const session = this.#session;
+    const { scan, outcome } = session;
     if (!scan) return;
-    if (up) this.#look.stand(up);
-    this.#session.stand({ up: typeof up === 'string' ? AXES[up] : up, unit });
+    const before = JSON.stringify([scan.cloud.up, scan.cloud.unit]);
+    session.stand({ up: typeof up === 'string' ? AXES[up] : up ?? scan.own.up, unit: unit ?? scan.own.unit });
+    if (before === JSON.stringify([scan.cloud.up, scan.cloud.unit])) return;
+    this.#look.stand(up ?? 'auto');
     this.#showStanding(scan);
-    if (this.#session.stale) this.#run.hidden = false;
+    if (session.stale) this.#run.hidden = false;
     this.#showSize(scan);
     this.#numbers.unit = scan.cloud.unit;
-    if (unit) this.#look.relabel();
+    this.#look.relabel();
     if (outcome) this.#saving.offer(outcome);
   }
 
@@ -201,14 +275,17 @@ export class App {
     this.#run.hidden = !this.#session.scan;
   }
 
-  /** @param {any} error @param {string} title @param {File} [given] the file that could not be read */
-  #failed(error, title, given) {
-    this.#message.showError(error, title);
+  /** @param {{ error: any, title: string, given?: File, model?: SampleName }} failure `given`: the file that could not be read */
+  #failed({ error, title, given, model }) {
+    const standIn = !this.#session.scan && !model;
+    this.#message.showError(error, title, { standIn });
+    if (given) this.#dropped.failed(given);
     // Whoever knows what the columns of a table are can still have it read.
     if (given && error?.table) {
-      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#session.openFile(given, { columns: chosen }));
+      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#openOne(given, chosen));
     }
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
+    if (standIn) this.#session.openSample('duck');
   }
 
   #escape() {
@@ -224,18 +301,32 @@ export class App {
     this.#settingsChanged();
   }
 
+  #closeHoles() {
+    this.#session.settings.set('boundary', 'closed');
+    this.#settingsChanged();
+  }
+
   #settingsChanged() {
     this.#controls.show(this.#session.target, this.#session.scan?.count ?? 0);
-    this.#noteAddress();
+    const { turned, ...edits } = this.#shown.value.edits;
+    this.#note({ edits });
     this.#session.apply();
   }
 
+  /** Notes what is shown now: by default as a step that can be undone. @param {Partial<Value>} [parts] @param {{ step?: boolean }} [how] */
+  #note(parts = {}, how) {
+    this.#shown.change({ settings: this.#session.settings.chosen, look: this.#look.state, ...parts }, how);
+  }
+
   /** The address always says what is shown, so that it can be shared, kept and reloaded. */
-  #noteAddress() {
-    const { scan, settings } = this.#session;
-    const address = addressOf(scan, settings, this.#look.state);
-    if (scan) history.replaceState(null, '', address);
-    this.#sharing.show(address, scan, `${scan?.file ?? 'scan'}-mesh.glb`);
+  #noteAddress(/** @type {Value} */ value) {
+    const { scan } = this.#session;
+    this.#sharing.show(addressOf(value), scan, `${scan?.file ?? 'scan'}-mesh.glb`);
+  }
+
+  /** Says whether the browser keeps scans of the person's. */
+  async #sayKept() {
+    byId('kept', HTMLElement).hidden = !(await keepsSome());
   }
 
   /** Somebody put another # behind the same address. */
@@ -243,13 +334,24 @@ export class App {
     const { words, sample, view, paint } = readAddress();
     this.#session.settings.read(words);
     this.#look.wish(view, paint);
-    if (isSample(sample) && sample !== this.#session.scan?.model) this.#session.openSample(sample);
+    const other = isSample(sample) && sample !== this.#session.scan?.model;
+    this.#note(other ? { scan: { model: sample }, edits: {} } : {}, { step: false });
+    if (other) this.#openSample(sample);
     else this.#settingsChanged();
   }
 
   #samples() {
     return /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-sample]'));
   }
+}
+
+/** Where a scan comes from, as it is kept. @returns {From} */
+function fromOf(/** @type {Scan} */ { model, src, key, columns }) {
+  return model ? { model } : src ? { src } : { key: key ?? '', ...(columns && { columns }) };
+}
+
+function same(/** @type {unknown} */ one, /** @type {unknown} */ other) {
+  return JSON.stringify(one) === JSON.stringify(other);
 }
 
 /** What a scan holds, and what of its file was no point. */

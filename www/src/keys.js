@@ -1,6 +1,7 @@
 /**
  * A key: what it is called in the help, what it does in words, and what it does, unless somebody else does it.
- * @typedef {{ key: string, also?: string[], shown?: string, does?: string, act?: () => void }} Key
+ * With `ctrl` it is pressed together with Ctrl, or with Command.
+ * @typedef {{ key: string, ctrl?: boolean, also?: string[], shown?: string, does?: string, act?: () => void }} Key
  */
 
 /** What takes letters itself. */
@@ -11,10 +12,12 @@ const TYPING = 'input:not([type="checkbox"], [type="radio"], [type="range"]), te
  * @param {Key[]} keys  by KeyboardEvent.key, letters in lower case
  */
 export function listenToKeys(keys) {
-  const actions = new Map(keys.flatMap(({ key, also = [], act }) => [key, ...also].map((name) => [name, act])));
+  const actions = new Map(keys.flatMap(({ key, ctrl, also = [], act }) => [key, ...also].map((name) => [`${ctrl ? 'ctrl ' : ''}${name}`, act])));
   document.addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    const act = actions.get(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+    if (event.defaultPrevented || event.altKey) return;
+    const ctrl = event.ctrlKey || event.metaKey;
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const act = actions.get(ctrl ? `ctrl ${event.shiftKey ? 'shift ' : ''}${key}` : key);
     if (!act || document.activeElement?.closest(TYPING)) return;
     event.preventDefault();
     act();

@@ -10,7 +10,8 @@ use crate::shell::{Result, command, root, run, say};
 /// and write.
 pub fn bench(arguments: &[String]) -> Result<()> {
     let asked = |name: &str| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
-    let is_own = |argument: &&String| !["orient", "prepare", "formats"].contains(&argument.as_str());
+    let is_own =
+        |argument: &&String| !["orient", "prepare", "formats"].contains(&argument.as_str());
     let others: Vec<&String> = arguments.iter().filter(is_own).collect();
     if arguments.is_empty() || !others.is_empty() {
         bench_package(&others)?;
@@ -64,14 +65,7 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
 /// An example with a known truth, beside Open3D: which side is out, and what is cut off a scan.
 fn bench_natively(name: &str, example: &str) -> Result<()> {
     let mut bench = command("cargo");
-    bench.args([
-        "run",
-        "--release",
-        "--quiet",
-        "--example",
-        example,
-        "--",
-    ]);
+    bench.args(["run", "--release", "--quiet", "--example", example, "--"]);
     match packages::open3d() {
         Ok(python) => {
             bench.arg(format!("peer={}", python.display()));

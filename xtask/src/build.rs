@@ -204,26 +204,45 @@ pub fn build_these(names: &[String]) -> Result<()> {
     if builds.is_empty() {
         return build();
     }
-    options::write()?;
-    Builder::ready()?.make_all(&builds, |build| {
-        say(&format!("building wasm, {}", build.name()));
-    })
+    make(&builds)
 }
 
-/// `cargo xtask build`: what is written from the table of options, and the builds of pkg/wasm.
+/// `cargo xtask build`: what is written from the table of options, the builds of pkg/wasm and the element in one file.
 pub fn build() -> Result<()> {
-    options::write()?;
-    Builder::ready()?.make_all(&Build::ALL, |build| {
-        say(&format!("building wasm, {}", build.name()));
-    })
+    make(&Build::ALL)
 }
 
-/// All builds, unless none of them is older than the sources: the quick way for tests.
+/// The builds that are older than the sources: the quick way for tests.
 pub fn ensure() -> Result<()> {
-    if Build::ALL.into_iter().all(Build::is_current) {
-        return options::write();
+    let is_old = |build: &Build| !build.is_current();
+    let old: Vec<Build> = Build::ALL.into_iter().filter(is_old).collect();
+    if old.is_empty() {
+        options::write()?;
+        return one_file();
     }
-    build()
+    make(&old)
+}
+
+fn make(builds: &[Build]) -> Result<()> {
+    options::write()?;
+    let builder = Builder::ready()?;
+    let begin = |build: Build| say(&format!("building wasm, {}", build.name()));
+    let (threads, others): (Vec<Build>, Vec<Build>) =
+        (builds.iter().copied()).partition(|&build| build == Build::Threads);
+    // Two target folders, so two at once: the optimiser of a build takes one core.
+    thread::scope(|scope| {
+        let beside = scope.spawn(|| builder.make_all(&threads, begin));
+        let made = builder.make_all(&others, begin);
+        beside.join().expect("no panic").and(made)
+    })?;
+    one_file()
+}
+
+/// `pkg/element.min.js`, made of the package's modules in no time.
+fn one_file() -> Result<()> {
+    packages::npm(&root().join("xtask"))?;
+    let remedy = "the element's one file was not made; the error is above";
+    run(command("node").arg("xtask/element.mjs"), remedy)
 }
 
 /// What the builds are made with.

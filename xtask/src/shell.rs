@@ -3,6 +3,7 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread;
 
 /// The error is a whole sentence for the person at the terminal.
 pub type Result<T> = std::result::Result<T, String>;
@@ -42,6 +43,34 @@ pub fn run(command: &mut Command, remedy: &str) -> Result<()> {
     }
 }
 
+/// Runs two commands at once. What each of them wrote is printed whole, and not before both are done.
+pub fn run_both(commands: [(&mut Command, &str); 2]) -> Result<()> {
+    let outputs = thread::scope(|scope| {
+        commands
+            .map(|(command, remedy)| {
+                command.stdout(Stdio::piped()).stderr(Stdio::piped());
+                (scope.spawn(|| command.output()), remedy)
+            })
+            .map(|(running, remedy)| (running.join().expect("no panic"), remedy))
+    });
+    let results = outputs.map(|(output, remedy)| {
+        let output = output.map_err(|error| format!("a program cannot be run ({error})"))?;
+        print!("{}", String::from_utf8_lossy(&output.stdout));
+        eprint!("{}", String::from_utf8_lossy(&output.stderr));
+        if output.status.success() {
+            Ok(())
+        } else {
+            Err(remedy.to_string())
+        }
+    });
+    let failed: Vec<String> = results.into_iter().filter_map(Result::err).collect();
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(failed.join("; "))
+    }
+}
+
 /// Standard output without the space around it; `None` if the program is missing or fails.
 pub fn output(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
@@ -78,6 +107,25 @@ mod tests {
         assert!(error.contains("`no-such-program`"), "{error}");
         assert_eq!(output(&mut command("no-such-program")), None);
         assert_eq!(find("no-such-program"), None);
+    }
+
+    #[test]
+    fn of_two_commands_each_failure_is_told() {
+        let version = || {
+            let mut command = cargo();
+            command.arg("--version");
+            command
+        };
+        let wrong = || {
+            let mut command = cargo();
+            command.arg("--no-such-option");
+            command
+        };
+        assert!(run_both([(&mut version(), "a"), (&mut version(), "b")]).is_ok());
+        let failed = |a: &mut Command, b: &mut Command| run_both([(a, "a"), (b, "b")]).unwrap_err();
+        assert_eq!(failed(&mut wrong(), &mut version()), "a");
+        assert_eq!(failed(&mut version(), &mut wrong()), "b");
+        assert_eq!(failed(&mut wrong(), &mut wrong()), "a; b");
     }
 
     #[test]

@@ -73,9 +73,9 @@ table! {
     /// What becomes of isolated input points: stray returns, and clumps of up to eight far from the rest.
     choice Outliers {
         /// They are points like all others.
-        Keep "keep",
+        Keep "keep" "Keep",
         /// They are left out, unless they are more than half of all; fractions are then of the diagonal of the others.
-        Drop "drop",
+        Drop "drop" "Leave out",
     }
 
     /// How a scalar, or the colours, of the input points go to the reduced point that stands for them.
@@ -126,7 +126,8 @@ table! {
         switch assignment: bool = false;
         /// Say where the sub-domains of the octree are: `ReducedCloud.cells`.
         switch cells: bool = false;
-        choice outliers: Outliers = Outliers::Keep, flag("whether isolated points are dropped first");
+        choice outliers: Outliers = Outliers::Keep, flag("whether isolated points are dropped first"),
+            field("Stray points", "Isolated points far from all others, as dust and reflections leave them.");
     }
 
     /// φ of eq. 9.

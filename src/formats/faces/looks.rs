@@ -42,6 +42,28 @@ pub(in crate::formats) struct Texture {
     pub(in crate::formats) wrap: [Wrap; 2],
     /// The nearest pixel, not a mean of four.
     pub(in crate::formats) nearest: bool,
+    /// Places, counted from the lower left corner, are scaled and then moved by these.
+    pub(in crate::formats) scale: [f64; 2],
+    pub(in crate::formats) offset: [f64; 2],
+}
+
+impl Texture {
+    /// A picture that repeats, as it is.
+    pub(in crate::formats) fn of(picture: usize) -> Texture {
+        Texture {
+            picture,
+            wrap: [Wrap::Repeat; 2],
+            nearest: false,
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+        }
+    }
+
+    /// The place of a picture that is at a place of the file; both from the upper left corner.
+    pub(super) fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let moved = |x: f64, k: usize| x * self.scale[k] + self.offset[k];
+        [moved(u, 0), 1.0 - moved(1.0 - v, 1)]
+    }
 }
 
 /// What is beyond a picture's border.

@@ -91,6 +91,7 @@ impl Painter<'_> {
             (0..2).for_each(|k| at[k] += weight * f64::from(place[k]));
         }
         let size = [picture.width, picture.height];
+        let at = texture.place(at);
         let place = [0, 1].map(|k| at[k] * size[k] as f64);
         let pixel = |x: f64, y: f64| {
             let [x, y] = [(x, 0), (y, 1)].map(|(i, k)| texture.wrap[k].pixel(i, size[k]));
@@ -165,14 +166,10 @@ impl Faces {
                     }
                 }
                 b"map_kd" => {
-                    if let (Some(i), Some((name, wrap))) = (current, map_file(rest)) {
+                    if let (Some(i), Some((name, texture))) = (current, map_file(rest)) {
                         let picture = self.picture_beside(name);
                         self.looks[i].factor = None;
-                        self.looks[i].texture = Some(Texture {
-                            picture,
-                            wrap: [wrap; 2],
-                            nearest: false,
-                        });
+                        self.looks[i].texture = Some(Texture { picture, ..texture });
                     }
                 }
                 _ => {}
@@ -190,32 +187,43 @@ impl Faces {
     }
 }
 
-/// The name behind the options of `map_Kd`, which may have blanks, and what is beyond the picture's border.
-fn map_file(rest: &[u8]) -> Option<(String, Wrap)> {
+/// The name behind the options of `map_Kd`, which may have blanks and quotes, and how the picture lies.
+fn map_file(rest: &[u8]) -> Option<(String, Texture)> {
     let mut rest = rest;
-    let mut wrap = Wrap::Repeat;
+    let mut texture = Texture::of(0);
     while let Some(option) = words(rest).next().filter(|word| word.starts_with(b"-")) {
+        // Up to three numbers.
+        let numbers: Vec<f64> = words(rest)
+            .skip(1)
+            .take(3)
+            .map_while(super::super::text::number)
+            .collect();
         let values = match option {
             b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-texres" | b"-bm" | b"-boost"
             | b"-imfchan" | b"-type" => 1,
             b"-mm" => 2,
-            // Up to three numbers.
-            b"-s" | b"-o" | b"-t" => words(rest)
-                .skip(1)
-                .take(3)
-                .take_while(|word| super::super::text::number(word).is_some())
-                .count(),
+            b"-s" | b"-o" | b"-t" => numbers.len(),
             _ => break,
         };
+        let moved = match option {
+            b"-s" => Some(&mut texture.scale),
+            b"-o" => Some(&mut texture.offset),
+            _ => None,
+        };
+        if let Some(moved) = moved {
+            moved.iter_mut().zip(&numbers).for_each(|(to, x)| *to = *x);
+        }
         if option == b"-clamp" && words(rest).nth(1) == Some(b"on") {
-            wrap = Wrap::Clamp;
+            texture.wrap = [Wrap::Clamp; 2];
         }
         for _ in 0..=values {
             let length = words(rest).next().map_or(0, <[u8]>::len);
             rest = rest.trim_ascii_start()[length..].trim_ascii_start();
         }
     }
-    (!rest.is_empty()).then(|| (String::from_utf8_lossy(rest).into_owned(), wrap))
+    let name = String::from_utf8_lossy(rest);
+    let name = name.trim_matches('"');
+    (!name.is_empty()).then(|| (name.into(), texture))
 }
 
 #[cfg(test)]
@@ -232,15 +240,19 @@ mod tests {
 
     #[test]
     fn maps_have_options_and_names_with_blanks() {
-        let name = |text: &str| map_file(text.as_bytes());
-        assert_eq!(name("a.png"), Some(("a.png".into(), Wrap::Repeat)));
+        let name = |text: &str| {
+            map_file(text.as_bytes()).map(|(name, at)| (name, at.wrap[0], at.scale, at.offset))
+        };
+        let plain = |name: &str| Some((name.to_string(), Wrap::Repeat, [1.0; 2], [0.0; 2]));
+        assert_eq!(name("a.png"), plain("a.png"));
+        assert_eq!(name("\"my scan.png\""), plain("my scan.png"));
         assert_eq!(
             name("-s 1 1 1 -clamp on  my scan.jpg"),
-            Some(("my scan.jpg".into(), Wrap::Clamp))
+            Some(("my scan.jpg".into(), Wrap::Clamp, [1.0; 2], [0.0; 2]))
         );
         assert_eq!(
-            name("-o 0.5 tex/1.png"),
-            Some(("tex/1.png".into(), Wrap::Repeat))
+            name("-s 2 3 1 -o 0.5 tex/1.png"),
+            Some(("tex/1.png".into(), Wrap::Repeat, [2.0, 3.0], [0.5, 0.0]))
         );
         assert_eq!(name("-bm 1"), None);
     }

@@ -3,7 +3,7 @@
 use super::super::faces::looks::{Look, Texture, Wrap};
 use super::super::faces::triangles::{Faces, Source};
 use super::accessor::within;
-use super::scene::{Document, Image, Material, TextureUse};
+use super::scene::{Document, Image, Material, TextureSource, TextureUse};
 
 /// What the materials need of the texture's places: which set, and how it is moved.
 pub(super) struct Placing {
@@ -27,6 +27,11 @@ pub(super) fn looks(document: &Document, buffer: &[u8], faces: &mut Faces) -> Ve
         let pbr = &material.pbr_metallic_roughness;
         let (factor, texture) = match &material.extensions.specular {
             Some(specular) => (specular.diffuse_factor, &specular.diffuse_texture),
+            // A body that is black and shines: scans whose light is in their texture.
+            None if material.only_shines() => {
+                let [r, g, b] = material.emissive_factor;
+                (Some([r, g, b, 1.0]), &material.emissive_texture)
+            }
             None => (pbr.base_color_factor, &pbr.base_color_texture),
         };
         let found = texture
@@ -55,9 +60,12 @@ pub(super) fn looks(document: &Document, buffer: &[u8], faces: &mut Faces) -> Ve
 
 fn texture_of(texture: &TextureUse, document: &Document) -> Option<Texture> {
     let entry = document.textures.get(texture.index)?;
-    let webp = entry.extensions.webp.as_ref().and_then(|webp| webp.source);
-    let picture = webp
+    // A picture of a kind that is not read is one that is missing.
+    let of = |other: &Option<TextureSource>| other.as_ref().and_then(|other| other.source);
+    let picture = of(&entry.extensions.webp)
         .or(entry.source)
+        .or(of(&entry.extensions.basis))
+        .or(of(&entry.extensions.avif))
         .filter(|&i| i < document.images.len())?;
     let sampler = entry.sampler.and_then(|i| document.samplers.get(i));
     let wrap = |code: Option<u32>| match code {
@@ -66,9 +74,9 @@ fn texture_of(texture: &TextureUse, document: &Document) -> Option<Texture> {
         _ => Wrap::Repeat,
     };
     Some(Texture {
-        picture,
         wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
         nearest: sampler.is_some_and(|sampler| sampler.mag_filter == Some(9728)),
+        ..Texture::of(picture)
     })
 }
 

@@ -103,7 +103,21 @@ pub(super) struct Material {
     pub(super) alpha_mode: String,
     pub(super) alpha_cutoff: Option<f64>,
     #[serde(default)]
+    pub(super) emissive_factor: [f64; 3],
+    pub(super) emissive_texture: Option<TextureUse>,
+    #[serde(default)]
     pub(super) extensions: MaterialExtensions,
+}
+
+impl Material {
+    /// Whether it has no colour but that of its own light.
+    pub(super) fn only_shines(&self) -> bool {
+        let pbr = &self.pbr_metallic_roughness;
+        let is_black = pbr
+            .base_color_factor
+            .is_some_and(|[r, g, b, _]| [r, g, b] == [0.0; 3]);
+        is_black && pbr.base_color_texture.is_none() && self.emissive_factor != [0.0; 3]
+    }
 }
 
 #[derive(Deserialize, Default)]
@@ -166,6 +180,10 @@ pub(super) struct TextureEntry {
 pub(super) struct TextureSources {
     #[serde(rename = "EXT_texture_webp")]
     pub(super) webp: Option<TextureSource>,
+    #[serde(rename = "KHR_texture_basisu")]
+    pub(super) basis: Option<TextureSource>,
+    #[serde(rename = "EXT_texture_avif")]
+    pub(super) avif: Option<TextureSource>,
 }
 
 #[derive(Deserialize)]
@@ -224,6 +242,14 @@ pub(super) fn parts<'a>(document: &'a Document, input: &Input) -> Result<Vec<Pla
         .find(|name| COMPRESSED.contains(&name.as_str()))
     {
         return Err(input.unsupported("meshes that are not compressed", name.clone()));
+    }
+    let instances = "EXT_mesh_gpu_instancing";
+    if document
+        .extensions_required
+        .iter()
+        .any(|name| name == instances)
+    {
+        return Err(input.unsupported("meshes that nodes place one by one", instances));
     }
     if document
         .buffers

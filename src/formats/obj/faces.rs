@@ -63,8 +63,12 @@ impl ObjFaces {
                 let (u, v) = (next(), next());
                 self.faces.places.push([u, 1.0 - v]);
             }
-            b"mtllib" if !rest.is_empty() && !self.faces.libraries.contains(&name()) => {
-                self.faces.libraries.push(name());
+            b"mtllib" => {
+                for name in libraries(rest) {
+                    if !self.faces.libraries.contains(&name) {
+                        self.faces.libraries.push(name);
+                    }
+                }
             }
             b"usemtl" => {
                 let names = &mut self.faces.look_names;
@@ -85,6 +89,17 @@ impl ObjFaces {
             self.faces.libraries.clear();
         }
         self.faces
+    }
+}
+
+/// Names of libraries: one, which may have blanks and quotes, or several that all end as libraries do.
+fn libraries(rest: &[u8]) -> Vec<String> {
+    let text = |name: &[u8]| String::from_utf8_lossy(name).trim_matches('"').to_owned();
+    let is_whole = |name: &[u8]| name.to_ascii_lowercase().ends_with(b".mtl");
+    if words(rest).all(is_whole) {
+        words(rest).map(text).collect()
+    } else {
+        vec![text(rest)]
     }
 }
 

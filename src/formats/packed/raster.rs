@@ -59,7 +59,11 @@ fn read(bytes: &[u8], keep: bool, table: &mut Option<Table>) -> TiffResult<Optio
     let (width, height) = file.dimensions()?;
     let bits = match file.colortype()? {
         ColorType::Gray(bits) => bits,
-        other => return Ok(Some(format!("a picture ({other:?})"))),
+        ColorType::Multiband { num_samples, .. } => {
+            return Ok(Some(format!("{num_samples} bands")));
+        }
+        ColorType::GrayA(_) => return Ok(Some("2 bands".into())),
+        _ => return Ok(Some("a picture in colours".into())),
     };
     let placing = placing(&mut file)?;
     if bits <= 8 && placing.is_none() {

@@ -65,17 +65,6 @@ pub(super) fn packed_color(fields: &[Field]) -> Option<usize> {
     fields.iter().position(packs)
 }
 
-/// The colour that a value packs: its integer, or, of a float, its `bits`. Some programs write the integer as a float's value: it
-/// is whole and not tiny, as the bits of no colour are without transparency or with all of it.
-pub(super) fn unpacked(field: &Field, value: f64, bits: u32) -> u32 {
-    let is_integer = (1.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;
-    if field.kind == Kind::Float && !is_integer {
-        bits
-    } else {
-        value as i64 as u32
-    }
-}
-
 /// A field's first value.
 pub(super) fn value(field: &Field, bytes: &[u8]) -> f64 {
     let mut raw = [0u8; 8];

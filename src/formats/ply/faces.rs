@@ -1,7 +1,7 @@
 //! The faces of a PLY file: the lists `vertex_indices` (or `vertex_index`) of the element `face`, with colours, and with the
 //! `texcoord` lists and `comment TextureFile` of MeshLab and of photogrammetry; strips of the element `tristrips`.
 
-use super::super::faces::looks::{Look, Texture, Wrap};
+use super::super::faces::looks::{Look, Texture};
 use super::super::faces::triangles::{Face, Faces, NONE};
 use super::super::table::Table;
 use super::header::{Element, Header, Property};
@@ -12,6 +12,8 @@ pub(super) struct Layout {
     /// Which of the lists names the vertices, and which the places in a picture.
     corners: usize,
     places: Option<usize>,
+    /// The places in a picture are those of the rows.
+    pub(super) by_row: bool,
     /// Which of the values are the colour, and which the picture's number.
     color: Option<[usize; 3]>,
     picture: Option<usize>,
@@ -39,6 +41,7 @@ impl Layout {
         Some(Layout {
             strips,
             corners: lists().position(|name| name == "vertex_indices" || name == "vertex_index")?,
+            by_row: false,
             places: lists().position(|name| name == "texcoord"),
             color: color(),
             picture: value("texnumber"),
@@ -94,7 +97,7 @@ impl Layout {
             rows: &rows,
             places: &place_of,
             color,
-            look: known.then_some(picture),
+            look: (known || self.by_row).then_some(picture),
             ..Face::default()
         };
         faces.push(face, position);
@@ -122,16 +125,35 @@ fn strips(rows: &[u32], faces: &mut Faces) {
 pub(super) fn looks(header: &Header, faces: &mut Faces) {
     for name in &header.textures {
         let picture = faces.picture_beside(name.clone());
-        let texture = Texture {
-            picture,
-            wrap: [Wrap::Repeat; 2],
-            nearest: false,
-        };
         faces.looks.push(Look {
-            texture: Some(texture),
+            texture: Some(Texture::of(picture)),
             ..Look::default()
         });
     }
+}
+
+/// Which values of the points' rows are places in a picture, where no face has its own and the points come first.
+pub(super) fn places_of_rows(header: &Header, points: usize) -> Option<[usize; 2]> {
+    const NAMES: [[&str; 2]; 4] = [
+        ["s", "t"],
+        ["u", "v"],
+        ["texture_u", "texture_v"],
+        ["texcoord_u", "texcoord_v"],
+    ];
+    let layouts = || {
+        header
+            .elements
+            .iter()
+            .enumerate()
+            .filter_map(|(i, e)| Some((i, Layout::of(e)?)))
+    };
+    let own = layouts().any(|(i, layout)| layout.places.is_some() || i < points);
+    if header.textures.is_empty() || own {
+        return None;
+    }
+    let names = header.elements[points].names();
+    let at = |wanted: &str| names.iter().position(|name| name == wanted);
+    NAMES.iter().find_map(|[u, v]| Some([at(u)?, at(v)?]))
 }
 
 /// The lists of a row.

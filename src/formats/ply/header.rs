@@ -1,6 +1,6 @@
 //! The header: encoding, elements, properties.
 
-use super::super::colors::ColorRange;
+use super::super::colors::{ColorRange, unpacked};
 use super::super::input::{Ending, Input};
 use super::super::table::{Columns, Precision};
 use super::super::text::quote;
@@ -123,6 +123,34 @@ impl Element {
         fixed.then(|| self.least_size(encoding))
     }
 
+    /// The property that packs a colour into four bytes, where the columns have none; they get three behind the row's.
+    pub(super) fn packed_color(&self, columns: &mut Columns) -> Option<Packed> {
+        if columns.color.is_some() {
+            return None;
+        }
+        let values = self
+            .properties
+            .iter()
+            .filter_map(|property| match property {
+                Property::One { name, scalar } => Some((name.to_lowercase(), *scalar)),
+                Property::List { .. } => None,
+            });
+        let values: Vec<(String, Scalar)> = values.collect();
+        let packs = |(name, scalar): &(String, Scalar)| {
+            ["rgb", "rgba"].contains(&name.as_str())
+                && matches!(scalar, Scalar::I32 | Scalar::U32 | Scalar::F32)
+        };
+        let at = values.iter().position(packs)?;
+        let behind = values.len();
+        columns.color = Some([behind, behind + 1, behind + 2]);
+        columns.colors = ColorRange::Bytes;
+        columns.scalars.retain(|(column, _)| *column != at);
+        Some(Packed {
+            at,
+            is_float: values[at].1 == Scalar::F32,
+        })
+    }
+
     /// Which values of a row are what; `None` without x, y and z.
     fn columns(&self, encoding: Encoding) -> Option<Columns> {
         let names = self.names();
@@ -156,6 +184,22 @@ impl Element {
             columns.precision = Precision::Single;
         }
         Some(columns)
+    }
+}
+
+/// A colour in one value of a row.
+pub(super) struct Packed {
+    at: usize,
+    is_float: bool,
+}
+
+impl Packed {
+    /// Red, green and blue.
+    pub(super) fn color(&self, row: &[f64]) -> [f64; 3] {
+        let value = row[self.at];
+        let [blue, green, red, _] =
+            unpacked(self.is_float, value, (value as f32).to_bits()).to_le_bytes();
+        [red, green, blue].map(f64::from)
     }
 }
 
@@ -233,9 +277,9 @@ impl HeaderLines {
             let text = String::from_utf8_lossy(line);
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
             match words[..] {
-                ["comment", "TextureFile", _, ..] => {
-                    let (_, name) = text.split_once("TextureFile").unwrap_or_default();
-                    self.textures.push(name.trim().into());
+                ["comment", key, _, ..] if key.eq_ignore_ascii_case("TextureFile") => {
+                    let (_, name) = text.split_once(key).unwrap_or_default();
+                    self.textures.push(name.trim().trim_matches('"').into());
                 }
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, version] => {

@@ -1,4 +1,5 @@
-//! Rows of numbers as text, after a comment that names the columns.
+//! Rows of numbers as text: coordinates, normals, colours. A comment names the columns where there are attributes, which nothing
+//! else could tell; without it the rows are the plain XYZ that other programs read.
 
 use super::names::names;
 use super::values::{is_double, triple, world};
@@ -8,7 +9,10 @@ use std::fmt::Write;
 /// Writes points in text that reads back to the same bits.
 pub(super) fn write(cloud: &RawCloud) -> Vec<u8> {
     let names: Vec<String> = names(cloud).into_iter().map(|(name, _)| name).collect();
-    let mut out = format!("# {}\n", names.join(" "));
+    let mut out = match cloud.attributes.is_empty() {
+        true => String::new(),
+        false => format!("# {}\n", names.join(" ")),
+    };
     let double = is_double(cloud);
     for i in 0..cloud.points() {
         for (axis, x) in world(cloud, i).into_iter().enumerate() {

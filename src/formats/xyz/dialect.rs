@@ -1,6 +1,6 @@
 //! How the lines of a table are taken apart: what stands between values, and what the decimal mark is.
 
-use super::super::text::number;
+use super::value::{Value, number_of, value_of};
 
 /// What stands between the values of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,6 +11,8 @@ pub(super) enum Delimiter {
     Blanks,
     /// Commas and blanks, any number of them.
     Any,
+    /// Commas that have a blank behind them: others are decimal marks.
+    CommaBlank,
 }
 
 /// How lines are taken apart.
@@ -43,22 +45,12 @@ pub(super) const DIALECTS: [Dialect; 11] = {
     ]
 };
 
-/// A value's text.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Value {
-    /// A number; NaN in all its spellings, which are also those of databases and spreadsheets for "none".
-    Number(f64),
-    /// A colour as hexadecimal digits with a mark before them.
-    Hex(f64),
-    Empty,
-    Text,
-}
-
 impl Dialect {
     /// What a caller calls the delimiter.
     pub(super) fn delimiter_name(self) -> char {
         match self.delimiter {
             Delimiter::Mark(mark) => mark.into(),
+            Delimiter::CommaBlank => ',',
             Delimiter::Blanks | Delimiter::Any => ' ',
         }
     }
@@ -68,13 +60,13 @@ impl Dialect {
         let mut rest = Some(match self.delimiter {
             // Tabs at the ends have empty values beside them.
             Delimiter::Mark(b'\t') => line,
-            _ => line.trim_ascii(),
+            _ => unwrapped(line.trim_ascii()),
         });
         std::iter::from_fn(move || {
             let mut line = rest?;
-            if !matches!(self.delimiter, Delimiter::Mark(_)) {
-                let between = |b: &&u8| self.divides(**b);
-                line = &line[line.iter().take_while(between).count()..];
+            if matches!(self.delimiter, Delimiter::Blanks | Delimiter::Any) {
+                let blanks = (0..line.len()).take_while(|&at| self.divides(line, at));
+                line = &line[blanks.count()..];
                 if line.is_empty() {
                     rest = None;
                     return None;
@@ -86,8 +78,12 @@ impl Dialect {
         })
     }
 
-    fn divides(self, byte: u8) -> bool {
+    fn divides(self, line: &[u8], at: usize) -> bool {
+        let byte = line[at];
         match self.delimiter {
+            Delimiter::CommaBlank => {
+                byte == b',' && line.get(at + 1).is_none_or(|b| b.is_ascii_whitespace())
+            }
             Delimiter::Mark(mark) => byte == mark,
             Delimiter::Blanks => byte.is_ascii_whitespace(),
             Delimiter::Any => byte.is_ascii_whitespace() || byte == b',',
@@ -99,79 +95,79 @@ impl Dialect {
         let quoted = line.trim_ascii_start();
         let blanks = line.len() - quoted.len();
         let closing = match quoted.split_first() {
-            Some((&quote @ (b'"' | b'\''), inside)) => inside
-                .iter()
-                .position(|&b| b == quote)
-                .map(|at| blanks + at + 2),
+            Some((&quote @ (b'"' | b'\''), inside)) => {
+                closing_quote(inside, quote).map(|at| blanks + at + 2)
+            }
             _ => None,
         };
         let from = closing.unwrap_or(0);
-        let end = line[from..].iter().position(|&b| self.divides(b));
-        end.map_or(line.len(), |end| from + end)
+        let end = (from..line.len()).find(|&at| self.divides(line, at));
+        end.unwrap_or(line.len())
     }
 
     /// What a value says.
     pub(super) fn value(self, token: &[u8]) -> Value {
-        if token.is_empty() {
-            return Value::Empty;
-        }
-        let found = if self.decimal_comma && token.contains(&b',') {
-            decimal_comma(token)
-        } else {
-            number(token)
-        };
-        match found {
-            Some(value) => Value::Number(value),
-            None if is_none(token) => Value::Number(f64::NAN),
-            None => hex(token, true).map_or(Value::Text, Value::Hex),
-        }
+        value_of(token, self.decimal_comma)
     }
 }
 
-/// A number whose one comma has digits on both sides.
-fn decimal_comma(token: &[u8]) -> Option<f64> {
-    let at = token.iter().position(|&b| b == b',')?;
-    let (before, after) = (token[..at].last()?, token.get(at + 1)?);
-    let digits = before.is_ascii_digit() && after.is_ascii_digit();
-    if !digits || token.contains(&b'.') {
-        return None;
+/// Whether lines have decimal commas, and commas with blanks behind them between values.
+pub(super) fn is_comma_blank<'a>(mut lines: impl Iterator<Item = &'a [u8]>) -> bool {
+    let dialect = Dialect {
+        delimiter: Delimiter::CommaBlank,
+        decimal_comma: true,
+    };
+    let (mut all, mut marked) = (0, 0);
+    lines.by_ref().for_each(|line| {
+        let mut tokens = dialect.split(line);
+        let numbers = tokens.by_ref().filter(|token| token.contains(&b','));
+        let right = |token: &[u8]| number_of(token, true).is_some();
+        all += 1;
+        marked += usize::from(
+            line.windows(2).any(|pair| pair == b", ") && {
+                let found: Vec<bool> = numbers.map(right).collect();
+                !found.is_empty() && found.iter().all(|right| *right)
+            },
+        );
+    });
+    2 * marked > all
+}
+
+/// Where a quote ends; a doubled one is a character of the text.
+fn closing_quote(inside: &[u8], quote: u8) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += inside.get(at..)?.iter().position(|&b| b == quote)?;
+        if inside.get(at + 1) != Some(&quote) {
+            return Some(at);
+        }
+        at += 2;
     }
-    let mut text = token.to_vec();
-    text[at] = b'.';
-    number(&text)
+}
+
+/// A row without the brackets around it.
+fn unwrapped(line: &[u8]) -> &[u8] {
+    let Some(inside) = line.strip_prefix(b"(").or(line.strip_prefix(b"[")) else {
+        return line;
+    };
+    let inside = inside
+        .strip_suffix(b",")
+        .or(inside.strip_suffix(b";"))
+        .unwrap_or(inside);
+    let Some(inside) = inside.strip_suffix(b")").or(inside.strip_suffix(b"]")) else {
+        return line;
+    };
+    if inside.iter().any(|b| b"()[]".contains(b)) {
+        line
+    } else {
+        inside.trim_ascii()
+    }
 }
 
 fn unquoted(value: &[u8]) -> &[u8] {
     match value {
         [b'"', inside @ .., b'"'] | [b'\'', inside @ .., b'\''] => inside.trim_ascii(),
         _ => value,
-    }
-}
-
-/// Spellings of "none" that are no number's.
-fn is_none(token: &[u8]) -> bool {
-    const NONE: [&str; 12] = [
-        "na", "n/a", "#n/a", "null", "none", "nil", "nodata", "no data", "-", "--", "*", "?",
-    ];
-    let is = |none: &&str| token.eq_ignore_ascii_case(none.as_bytes());
-    NONE.iter().any(is) || token.iter().all(|&b| b == b'*')
-}
-
-/// A colour as six or eight hexadecimal digits, after `#` or `0x` where they are `marked`.
-pub(super) fn hex(token: &[u8], marked: bool) -> Option<f64> {
-    let digits = match token {
-        [b'#', digits @ ..] | [b'0', b'x' | b'X', digits @ ..] => digits,
-        digits if !marked => digits,
-        _ => return None,
-    };
-    let text = std::str::from_utf8(digits).ok()?;
-    let value = u32::from_str_radix(text, 16).ok()?;
-    match digits.len() {
-        6 => Some(f64::from(value)),
-        // `#RRGGBBAA` of the web: the colour comes first.
-        8 if token[0] == b'#' => Some(f64::from(value >> 8)),
-        8 => Some(f64::from(value & 0xff_ffff)),
-        _ => None,
     }
 }
 
@@ -202,20 +198,17 @@ mod tests {
     }
 
     #[test]
-    fn a_decimal_comma_has_digits_on_both_sides() {
-        assert_eq!(decimal_comma(b"-1,5e3"), Some(-1500.0));
-        for token in [&b"1,"[..], b",5", b"1,2,3", b"1.0,5", b"1, 5"] {
-            assert_eq!(decimal_comma(token), None);
-        }
-    }
-
-    #[test]
-    fn hexadecimal_colours_have_six_or_eight_digits() {
-        assert_eq!(hex(b"#ff8000", true), Some(16_744_448.0));
-        assert_eq!(hex(b"0x80FF8000", true), Some(16_744_448.0));
-        assert_eq!(hex(b"#ff800080", true), Some(16_744_448.0));
-        assert_eq!(hex(b"ff8000", false), Some(16_744_448.0));
-        assert_eq!(hex(b"ff8000", true), None);
-        assert_eq!(hex(b"#ff80", true), None);
+    fn quotes_are_doubled_and_rows_stand_in_brackets() {
+        assert_eq!(
+            split(Delimiter::Mark(b','), "1,\"a \"\"b\"\", c\",2"),
+            ["1", "a \"\"b\"\", c", "2"]
+        );
+        assert_eq!(split(Delimiter::Mark(b','), "(1, 2, 3),"), ["1", "2", "3"]);
+        assert_eq!(split(Delimiter::Blanks, "[1 2 3]"), ["1", "2", "3"]);
+        assert_eq!(split(Delimiter::Mark(b','), "[m],[m]"), ["[m]", "[m]"]);
+        assert_eq!(
+            split(Delimiter::CommaBlank, "1,5, -2, 3,25"),
+            ["1,5", "-2", "3,25"]
+        );
     }
 }

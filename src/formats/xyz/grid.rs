@@ -2,9 +2,10 @@
 
 use super::super::options::ReadOptions;
 use super::super::text::decoded;
-use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
+use super::dialect::{DIALECTS, Delimiter, Dialect, is_comma_blank};
 use super::guess::Column;
 use super::line::{Numbered, is_comment};
+use super::value::{Value, color};
 
 /// The dialect in which most lines are rows, with the fewest values that are no numbers and the fewest widths.
 pub(super) fn dialect_of(said: &[&Numbered], options: &ReadOptions) -> Dialect {
@@ -27,6 +28,20 @@ pub(super) fn dialect_of(said: &[&Numbered], options: &ReadOptions) -> Dialect {
         },
         decimal_comma: options.decimal == Some(','),
     });
+    let rows = || {
+        said.iter()
+            .map(|line| line.bytes.as_slice())
+            .filter(|line| !is_comment(line))
+    };
+    if options.delimiter.is_none_or(|mark| mark == ',')
+        && options.decimal.is_none_or(|mark| mark == ',')
+        && is_comma_blank(rows())
+    {
+        return Dialect {
+            delimiter: Delimiter::CommaBlank,
+            decimal_comma: true,
+        };
+    }
     let candidates = DIALECTS.into_iter().filter(asked);
     let mut best: Option<((usize, usize, usize), Dialect)> = None;
     for dialect in candidates.chain(own) {
@@ -105,6 +120,7 @@ impl Grid {
                 column.texts += usize::from(*value == Value::Text);
                 column.empty += usize::from(*value == Value::Empty);
                 column.hexes += usize::from(matches!(value, Value::Hex(_)));
+                column.colors += usize::from(color(token).is_some());
                 column.fractions += usize::from(token.iter().any(|b| b".,eEdD".contains(b)));
             }
         }

@@ -8,6 +8,8 @@ pub(super) struct Column {
     pub(super) texts: usize,
     pub(super) empty: usize,
     pub(super) hexes: usize,
+    /// Values that are a colour, as text says it.
+    pub(super) colors: usize,
     /// Values with a decimal mark or an exponent.
     pub(super) fractions: usize,
 }
@@ -57,6 +59,27 @@ impl Column {
         runs || (measured && self.distinct() == self.values.len())
     }
 
+    /// Seconds of a clock: they grow, and no coordinate is as large.
+    fn is_time(&self) -> bool {
+        const LEAST: f64 = 1e8;
+        self.values.len() > 2 && self.rises() && self.values[0] >= LEAST
+    }
+
+    fn rises(&self) -> bool {
+        self.values.windows(2).all(|pair| pair[0] <= pair[1])
+    }
+
+    /// Colours as text.
+    pub(super) fn is_written_color(&self) -> bool {
+        self.texts > 0 && 2 * self.colors > self.values.len() - self.empty
+    }
+
+    /// A packed colour whose bits were taken for a number: one of less than 2⁻¹²⁵.
+    pub(super) fn has_color_bits(&self) -> bool {
+        const MOST: f64 = 2.36e-38;
+        self.all(|v| (0.0..MOST).contains(&v)) && self.values.iter().any(|v| *v > 0.0)
+    }
+
     /// A packed colour: `0xRRGGBB` or `0xAARRGGBB`, which may have a sign.
     pub(super) fn is_packed(&self) -> bool {
         let range = -2_147_483_648.0..=4_294_967_295.0;
@@ -64,6 +87,8 @@ impl Column {
             || self.values.windows(2).all(|pair| pair[0] >= pair[1]);
         let large = self.values.iter().any(|v| v.abs() > 65_535.0);
         2 * self.hexes > self.values.len()
+            || self.is_written_color()
+            || self.has_color_bits()
             || (self.all(|v| v.fract() == 0.0 && range.contains(&v)) && large && !sorted)
     }
 }
@@ -124,7 +149,7 @@ impl Field {
 }
 
 /// Vectors of length 1, within 5 %.
-fn is_unit(columns: &[&Column]) -> bool {
+pub(super) fn is_unit(columns: &[&Column]) -> bool {
     (0..columns[0].values.len()).all(|row| {
         let [x, y, z] = [0, 1, 2].map(|axis| columns[axis].values[row]);
         ((x * x + y * y + z * z).sqrt() - 1.0).abs() <= 0.05
@@ -151,7 +176,14 @@ pub(super) fn guess(columns: &[Column], counted: bool) -> Guess {
         .collect();
     let of = |places: &[usize]| -> Vec<&Column> { places.iter().map(|&i| &columns[i]).collect() };
     let mut roles: Vec<String> = vec!["-".into(); columns.len()];
-    let index = numeric.len() >= 4 && columns[numeric[0]].is_index(&of(&numeric[1..4]));
+    let first = &columns[*numeric.first().unwrap_or(&0)];
+    let index = numeric.len() >= 4 && (first.is_index(&of(&numeric[1..4])) || first.is_time());
+    // What grows from row to row may be a time.
+    let may_be_time = numeric.len() >= 4
+        && !index
+        && first.values.len() > 8
+        && first.distinct() == first.values.len()
+        && first.rises();
     let numeric = &numeric[usize::from(index)..];
     let (place, rest) = numeric.split_at(numeric.len().min(3));
     let mut name = |places: &[usize], names: &[&str]| {
@@ -175,10 +207,13 @@ pub(super) fn guess(columns: &[Column], counted: bool) -> Guess {
     let mut fitting = preferred.into_iter().chain(LAYOUTS).filter(fits);
     let layout = fitting.next();
     let others = fitting.any(|other| Some(other) != layout);
-    let packed = rest.iter().position(|&i| columns[i].is_packed());
-    let mut weak = index || others;
+    let packed = rest.iter().copied().find(|&i| columns[i].is_packed());
+    let written =
+        (place.last().map_or(0, |z| z + 1)..columns.len()).find(|&i| columns[i].is_written_color());
+    let packed = packed.or(written);
+    let mut weak = index || may_be_time || others;
     if let Some(at) = packed.filter(|_| layout.is_none_or(|layout| layout == [Field::Intensity])) {
-        name(&rest[at..=at], &["rgb"]);
+        name(&[at], &["rgb"]);
     } else if let Some(layout) = layout {
         let mut start = 0;
         for field in layout {

@@ -1,20 +1,36 @@
 //! What the lines before the rows of a table call its columns.
 
 use super::super::text::decoded;
-use super::dialect::{DIALECTS, Delimiter, Dialect, Value};
+use super::dialect::{DIALECTS, Delimiter, Dialect};
 use super::grid::Grid;
 use super::line::{Line, NoPlan, Numbered, is_comment, line_of};
 use super::names;
 
-/// A header that numbers its columns, as pandas writes it: `,0,1,2`.
+/// A header that numbers its columns, as pandas writes it: `,0,1,2`, or `0,1,2` above coordinates that have decimal places.
 pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> bool {
-    let Some(line) = lines.first() else {
+    let [line, below @ ..] = lines else {
         return false;
     };
-    let mut tokens = dialect.split(&line.bytes).enumerate();
-    lines.len() > 1
-        && tokens.next().is_some_and(|(_, first)| first.is_empty())
-        && tokens.all(|(i, token)| dialect.value(token) == Value::Number(i as f64 - 1.0))
+    let tokens: Vec<&[u8]> = dialect.split(&line.bytes).collect();
+    let numbers = |tokens: &[&[u8]]| {
+        let number = |(i, token): (usize, &&[u8])| *token == i.to_string().as_bytes();
+        tokens.len() >= 3 && tokens.iter().enumerate().all(number)
+    };
+    let has_places = |line: &&&Numbered| {
+        let mut values = dialect.split(&line.bytes);
+        values.by_ref().take(3).all(|value| value.contains(&b'.'))
+    };
+    match tokens.as_slice() {
+        [first, rest @ ..] if first.is_empty() => !below.is_empty() && numbers(rest),
+        all => {
+            below.len() >= 3 && numbers(all) && below.iter().take(100).all(|line| has_places(&line))
+        }
+    }
+}
+
+/// Whether the names in a line only number the columns.
+pub(super) fn only_numbers(line: &Numbered, dialect: Dialect) -> bool {
+    names::only_number(&names_of(&line.bytes, dialect))
 }
 
 /// What the lines before the rows say.
@@ -23,7 +39,10 @@ pub(super) enum Header {
         roles: Vec<String>,
         names: Vec<String>,
         ragged: bool,
+        weak: bool,
     },
+    /// Names that only number the columns.
+    Numbers,
     None,
 }
 
@@ -48,6 +67,7 @@ pub(super) fn header(
                 Ok(Header::None)
             }
             Some(line) if is_header_of_numbers(&[line, line], dialect) => Ok(Header::None),
+            Some(line) if only_numbers(line, dialect) => Ok(Header::Numbers),
             Some(line) => Err(NoPlan::line(
                 line,
                 "numbers, or names of columns with x, y and z, or the option columns",
@@ -72,7 +92,9 @@ pub(super) fn header(
     if names.len() + 1 == width && list.is_none() && is_row_name(grid) {
         names.insert(0, String::new());
     }
-    let roles = names::roles(&names).unwrap_or_default();
+    let named = names::named(&names);
+    let weak = named.as_ref().is_some_and(|named| named.weak);
+    let roles = named.map_or(Vec::new(), |named| named.roles);
     let matches = width == 0 || roles.len() == width || list.is_some();
     if !matches && is_comment(&line.bytes) {
         return Ok(Header::None);
@@ -94,6 +116,7 @@ pub(super) fn header(
         roles,
         names,
         ragged: list.is_some(),
+        weak,
     })
 }
 
@@ -114,26 +137,40 @@ pub(super) fn header_names<'a>(
         let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
         let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
         let text = &bytes[marks..];
-        let own = std::iter::once(dialect);
-        let splits: Vec<Vec<String>> = own
-            .chain(
-                DIALECTS
-                    .into_iter()
-                    .filter(|dialect| !dialect.decimal_comma),
-            )
-            .map(|dialect| names_of(text, dialect))
-            .filter(|names| names::roles(names).is_some())
-            .collect();
-        let fitting = splits.iter().find(|names| names.len() == width);
-        let found = fitting.or_else(|| {
-            splits
-                .iter()
-                .max_by_key(|names| std::cmp::Reverse(names.len().abs_diff(width)))
-        });
-        found.map(|names| (*line, names.clone()))
+        // Behind a mark: `VARIABLES = "X", "Y", "Z"`, `# columns: x y z`.
+        let behind = |mark: u8| {
+            text.iter()
+                .position(|&b| b == mark)
+                .map(|at| &text[at + 1..])
+        };
+        let texts = [Some(text), behind(b'='), behind(b':')];
+        let mut found = texts.into_iter().flatten();
+        let names = found.find_map(|text| names_within(text, dialect, width));
+        names.map(|names| (*line, names))
     })
 }
 
+/// The names in a line that name x, y and z.
+fn names_within(text: &[u8], dialect: Dialect, width: usize) -> Option<Vec<String>> {
+    let others = DIALECTS
+        .into_iter()
+        .filter(|other| !other.decimal_comma && *other != dialect);
+    let own = names_of(text, dialect);
+    // Names that are as many as the columns are no others, taken apart.
+    let fits = own.len() == width;
+    let splits: Vec<Vec<String>> = std::iter::once(own)
+        .chain(others.map(|dialect| names_of(text, dialect)))
+        .filter(|names| !fits || names.len() == width)
+        .filter(|names| names::roles(names).is_some())
+        .collect();
+    let fitting = splits.iter().find(|names| names.len() == width);
+    let found = fitting.or_else(|| {
+        splits
+            .iter()
+            .max_by_key(|names| std::cmp::Reverse(names.len().abs_diff(width)))
+    });
+    found.cloned()
+}
 /// Names of columns; between blanks a unit in brackets belongs to the name before it.
 fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();

@@ -1,7 +1,8 @@
 //! Tells what kind a line of a table is: blank or comment, count, row, other.
 
 use super::super::text::quote;
-use super::dialect::{Dialect, Value};
+use super::dialect::Dialect;
+use super::value::Value;
 
 /// A line of the file.
 pub(super) struct Numbered {
@@ -31,9 +32,17 @@ impl NoPlan {
     }
 }
 
+/// Whether a line says nothing: a comment, or blanks and what systems put at the end of a file (a NUL, a substitute).
 pub(super) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
-    line.starts_with(b"//") || line.first().is_some_and(|mark| b"#%!".contains(mark))
+    !is_said(line)
+        || line.starts_with(b"//")
+        || line.first().is_some_and(|mark| b"#%!".contains(mark))
+}
+
+/// Whether a line has more than blanks and control characters.
+pub(super) fn is_said(line: &[u8]) -> bool {
+    line.iter().any(|&b| b > b' ')
 }
 
 /// What a line is.

@@ -1,3 +1,4 @@
+import { say } from '../words/say.js';
 import { isInside } from './settings.js';
 
 /** @import { Range } from './settings.js' */
@@ -5,6 +6,8 @@ import { isInside } from './settings.js';
 /** A person who drags rests at least this long before the job starts again. */
 const PAUSE_MS = 250;
 const STEPS = 1000;
+/** A range that ends here or beyond has no end that a person would meet. */
+const MANY = 0xffffffff;
 
 /** A number: a slider for the feel and a field for the exact value. */
 export class Amount {
@@ -13,18 +16,22 @@ export class Amount {
   #timer = 0;
   /** @type {Range} */
   #range = { low: 0.1, high: 1, least: 0.1, most: 1, open: '', unit: '' };
+  #error;
   /** What holds while the field is empty; null where it may not be. @type {number | null} */
   #otherwise = null;
 
   /**
    * @param {HTMLInputElement} slider
    * @param {HTMLInputElement} field
+   * @param {HTMLElement} error  says which numbers the field takes, when it holds another
    * @param {(value: number | undefined) => void} changing  at once, to show what it will be; undefined is the default
    * @param {(value: number | undefined) => void} settled   after a rest, to start the job
    */
-  constructor(slider, field, changing, settled) {
+  constructor(slider, field, error, changing, settled) {
     this.#slider = slider;
     this.#field = field;
+    this.#error = error;
+    field.setAttribute('aria-errormessage', error.id);
     const change = (/** @type {number | undefined} */ value, /** @type {number} */ pause) => {
       changing(value);
       clearTimeout(this.#timer);
@@ -45,12 +52,12 @@ export class Amount {
       const empty = field.value === '' && !field.validity.badInput;
       if (empty && this.#otherwise !== null) {
         slider.valueAsNumber = this.#stepOf(this.#otherwise);
-        field.setCustomValidity('');
+        this.#refuse('');
         return change(undefined, PAUSE_MS);
       }
-      const value = field.valueAsNumber / (this.#range.times ?? 1);
+      const value = this.#meant(field.valueAsNumber);
       const fits = isInside(this.#range, value);
-      field.setCustomValidity(fits ? '' : this.#accepted());
+      this.#refuse(fits ? '' : this.#accepted());
       if (!fits) return this.#forget();
       slider.valueAsNumber = this.#stepOf(value);
       change(value, 2 * PAUSE_MS);
@@ -69,7 +76,7 @@ export class Amount {
     this.#range = range;
     this.#otherwise = otherwise;
     this.#field.placeholder = placeholder;
-    this.#field.setCustomValidity('');
+    this.#refuse('');
     const text = value === undefined ? '' : this.#text(value);
     // Who types 12.50 finds it as it was typed.
     if (Number(this.#field.value) !== Number(text) || !text) this.#field.value = text;
@@ -85,8 +92,25 @@ export class Amount {
 
   /** What the field takes, in words. */
   #accepted() {
-    const { least, most, open } = this.#range;
-    return `${open.includes('(') ? 'above' : 'from'} ${this.#text(least)} ${open.includes(')') ? 'and below' : 'to'} ${this.#text(most)}`;
+    const { least, most, open, unit, whole } = this.#range;
+    const ends = { least: `${this.#text(least)} ${unit}`.trim(), most: `${this.#text(most)} ${unit}`.trim() };
+    if (whole) return most >= MANY ? say('This takes a whole number, {least} or more.', ends) : say('This takes a whole number from {least} to {most}.', ends);
+    if (open === '()') return say('This takes a number above {least} and below {most}.', ends);
+    return open === '(' ? say('This takes a number above {least}, up to {most}.', ends) : say('This takes a number from {least} to {most}.', ends);
+  }
+
+  /** Says why the number is not taken; empty where it is. */
+  #refuse(/** @type {string} */ words) {
+    this.#field.setCustomValidity(words);
+    this.#error.textContent = words;
+    this.#error.hidden = !words;
+    if (words) this.#field.setAttribute('aria-invalid', 'true');
+    else this.#field.removeAttribute('aria-invalid');
+  }
+
+  /** The value of a number that is shown, without the digits that binary fractions add: 33.3 % is 0.333. */
+  #meant(/** @type {number} */ shown) {
+    return Number((shown / (this.#range.times ?? 1)).toPrecision(12));
   }
 
   #forget() {
@@ -96,8 +120,8 @@ export class Amount {
 
   /** Equal steps multiply the value by an equal factor: 1 % to 2 % is as far as 30 % to 60 %. Rounded as shown. */
   #valueAt(/** @type {number} */ step) {
-    const { low, high, times = 1 } = this.#range;
-    const value = Number(this.#text(low * (high / low) ** (step / STEPS))) / times;
+    const { low, high } = this.#range;
+    const value = this.#meant(Number(this.#text(low * (high / low) ** (step / STEPS))));
     return Math.min(high, Math.max(low, value));
   }
 

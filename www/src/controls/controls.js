@@ -1,6 +1,6 @@
 import { Amount } from './amount.js';
 import { byId, element } from '../dom.js';
-import { CONTROLS, TARGETS, defaultOf } from './settings.js';
+import { CONTROLS, PLACES, TARGETS, defaultOf } from './settings.js';
 
 /**
  * @import { Settings, Target, TargetKind } from './settings.js'
@@ -8,6 +8,8 @@ import { CONTROLS, TARGETS, defaultOf } from './settings.js';
 
 /** Targets that say how many points there will be. */
 const COUNTED = new Set(['ratio', 'count']);
+/** Targets for those who know the paper. */
+const EXPERT = new Set(['flatness']);
 
 /** The controls of all options, made from the tables of settings.js and the package's defaults. */
 export class Controls {
@@ -17,6 +19,7 @@ export class Controls {
   #kind = byId('target-kind', HTMLSelectElement);
   #count = byId('keep-count', HTMLOutputElement);
   #reset = byId('reset', HTMLButtonElement);
+  #expert = byId('expert', HTMLDetailsElement);
   #keep;
   /** Each shows what the settings say. @type {(() => void)[]} */
   #refreshers = [];
@@ -37,16 +40,17 @@ export class Controls {
     this.#keep = new Amount(
       byId('keep-slider', HTMLInputElement),
       byId('keep-field', HTMLInputElement),
+      byId('keep-error', HTMLElement),
       (value) => this.#say({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
       (value) => this.#choose({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
     );
-    for (const [kind, { label }] of Object.entries(TARGETS)) this.#kind.append(new Option(label, kind));
     this.#kind.addEventListener('change', () => this.#choose(this.#converted(/** @type {TargetKind} */ (this.#kind.value))));
     this.#reset.addEventListener('click', () => {
       settings.reset();
       this.#changed();
     });
-    byId('options', HTMLElement).append(...Object.keys(CONTROLS).map((key) => this.#make(key)));
+    for (const [place, keys] of Object.entries(PLACES)) byId(`options-${place}`, HTMLElement).append(...keys.map((key) => this.#make(key)));
+    this.#expert.addEventListener('toggle', () => this.#offerKinds());
     this.#refresh();
   }
 
@@ -56,7 +60,7 @@ export class Controls {
     this.#target = target;
     const { label, ...range } = TARGETS[target.kind];
     const high = target.kind === 'count' ? Math.max(range.low + 1, points) : range.high;
-    this.#kind.value = target.kind;
+    this.#offerKinds();
     for (const id of ['keep-slider', 'keep-field']) byId(id, HTMLInputElement).ariaLabel = `${label}${range.unit && ', in per cent'}`;
     byId('keep-unit', HTMLElement).textContent = range.unit;
     byId('keep-title', HTMLElement).textContent = COUNTED.has(target.kind) ? 'Points to keep' : label;
@@ -77,11 +81,19 @@ export class Controls {
     this.#changed();
   }
 
-  /** The same amount in another measure, where there is one. */
+  /** The ways to decide; an expert's are offered to whoever looks at those, or has one. */
+  #offerKinds() {
+    const all = /** @type {TargetKind[]} */ (Object.keys(TARGETS));
+    const offered = all.filter((kind) => !EXPERT.has(kind) || this.#expert.open || kind === this.#target.kind);
+    this.#kind.replaceChildren(...offered.map((kind) => new Option(TARGETS[kind].label, kind)));
+    this.#kind.value = this.#target.kind;
+  }
+
+  /** The same amount in another measure, where there is one. Shares have as many digits as are shown. */
   #converted(/** @type {TargetKind} */ kind) {
     const { kind: from, value } = this.#target;
     if (kind === 'count' && from === 'ratio') return { kind, value: Math.max(1, Math.round(value * this.#points)) };
-    if (kind === 'ratio' && from === 'count') return { kind, value: Math.min(1, value / Math.max(1, this.#points)) };
+    if (kind === 'ratio' && from === 'count') return { kind, value: Math.min(1, Number((value / Math.max(1, this.#points)).toPrecision(3))) };
     return { kind, value: TARGETS[kind].start };
   }
 
@@ -95,15 +107,16 @@ export class Controls {
     const id = `option-${key}`;
     const hint = element('p', { className: 'hint', id: `${id}-hint`, textContent: control.hint });
     const label = element('label', { htmlFor: id, textContent: control.label });
-    const input = this.#input(key, id);
+    const error = element('p', { className: 'invalid', id: `${id}-error`, role: 'alert', hidden: true });
+    const input = this.#input(key, id, error);
     input.querySelector(`#${id}`)?.setAttribute('aria-describedby', hint.id);
     const row = element('div', { className: `option ${control.kind}` });
-    row.append(label, input, hint);
+    row.append(label, input, ...(control.kind === 'number' ? [error] : []), hint);
     return row;
   }
 
-  /** @param {string} key @param {string} id @returns {HTMLElement} a box with what is labelled */
-  #input(key, id) {
+  /** @param {string} key @param {string} id @param {HTMLElement} error @returns {HTMLElement} a box with what is labelled */
+  #input(key, id, error) {
     const control = CONTROLS[key];
     const settings = this.#settings;
     const box = element('div', { className: 'option-input' });
@@ -126,7 +139,7 @@ export class Controls {
       const slider = element('input', { type: 'range', ariaLabel: `${control.label}, slider` });
       const field = element('input', { id, type: 'number', step: 'any', inputMode: 'decimal' });
       const unit = element('span', { textContent: control.unit });
-      const amount = new Amount(slider, field, () => {}, take);
+      const amount = new Amount(slider, field, error, () => {}, take);
       this.#refreshers.push(() => {
         const fallback = control.follows?.[String(settings.get('method'))] ?? defaultOf(key);
         const chosen = /** @type {number | undefined} */ (settings.values[key]);

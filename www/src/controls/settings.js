@@ -26,6 +26,13 @@ import { FIELDS, TARGETS } from './fields-table.js';
 /** Options that have a control, by name. */
 export const CONTROLS = /** @type {Record<string, Control>} */ (FIELDS);
 
+/** Where each is found: beside the points to keep, among more settings, or with those for experts. */
+export const PLACES = {
+  plain: ['boundary', 'outliers'],
+  more: ['orientation', 'flip', 'sharp', 'smoothing'],
+  expert: ['method', 'fuzzifier', 'accuracy'],
+};
+
 export { TARGETS };
 
 /** @typedef {keyof typeof TARGETS} TargetKind */
@@ -53,6 +60,17 @@ export class Settings {
     return this.target !== null || Object.keys(this.values).length > 0;
   }
 
+  /** What was chosen, as plain data. @returns {import('../state/shown.js').Chosen} */
+  get chosen() {
+    return { target: this.target, values: { ...this.values } };
+  }
+
+  /** Takes what was chosen before. */
+  take(/** @type {import('../state/shown.js').Chosen} */ { target, values }) {
+    this.target = target;
+    this.values = { ...values };
+  }
+
   reset() {
     this.target = null;
     this.values = {};
@@ -68,8 +86,7 @@ export class Settings {
 
   /** As in an address: only what was chosen. @returns {[string, string][]} */
   entries() {
-    const target = /** @type {[string, number][]} */ (this.target ? [[this.target.kind, this.target.value]] : []);
-    return [...target, ...Object.entries(this.values)].map(([key, value]) => [key, String(value)]);
+    return entriesOf(this.chosen);
   }
 
   /** Takes what an address says; what makes no sense there is left out. */
@@ -84,6 +101,12 @@ export class Settings {
   #readTarget(/** @type {TargetKind} */ kind, /** @type {number} */ value) {
     if (isInside(TARGETS[kind], value)) this.target = { kind, value };
   }
+}
+
+/** What was chosen, as in an address. @param {import('../state/shown.js').Chosen} chosen @returns {[string, string][]} */
+export function entriesOf({ target, values }) {
+  const amount = /** @type {[string, number][]} */ (target ? [[target.kind, target.value]] : []);
+  return [...amount, ...Object.entries(values)].map(([key, value]) => [key, String(value)]);
 }
 
 /** The package's default; undefined where that follows from other options. */

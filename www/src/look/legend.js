@@ -1,5 +1,6 @@
 import { cssGradient } from 'pointweave/viewer';
 import { byId, element } from '../dom.js';
+import { say } from '../words/say.js';
 
 /** @import { Kinds, Scale } from 'pointweave/viewer' */
 
@@ -7,9 +8,10 @@ import { byId, element } from '../dom.js';
 export class Legend {
   #box = byId('legend', HTMLElement);
 
-  show(/** @type {Scale | Kinds | null} */ legend) {
-    this.#box.hidden = !legend;
-    if (!legend) return this.#box.replaceChildren();
+  /** @param {Scale | Kinds | null} legend @param {boolean} [coming]  it is being made */
+  show(legend, coming = false) {
+    this.#box.hidden = !legend && !coming;
+    if (!legend) return this.#box.replaceChildren(...(coming ? [element('span', { textContent: say('Measuring…') })] : []));
     const parts = 'kinds' in legend ? kinds(legend) : scale(legend);
     this.#box.replaceChildren(element('strong', { textContent: legend.title }), ...parts, element('span', { textContent: legend.note }));
   }

@@ -1,29 +1,32 @@
-import { PAINTS, PAINT_WORDS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
+import { PAINTS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
 import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
+import { say } from '../words/say.js';
 import { Legend } from './legend.js';
+import { WORDS } from './paint-words.js';
+import { Painting } from './painting.js';
 import { PieceChoice } from './piece.js';
 import { Split } from './split.js';
 import { followTheme } from './theme.js';
 
 /**
- * @import { Axis, Paint, PaintName, Side } from 'pointweave/viewer'
+ * @import { Axis, Paint, PaintName, Side, Subject } from 'pointweave/viewer'
  * @import { Key } from '../keys.js'
  * @import { Outcome, Scan } from '../session/session.js'
- * @typedef {'points' | 'reduced' | 'mesh'} View
- * @typedef {View | 'compare'} Choice
+ * @typedef {'points' | 'reduced' | 'mesh' | 'kept'} View `kept`: a mesh of other settings, to compare with
+ * @typedef {'points' | 'reduced' | 'mesh' | 'compare'} Choice
  */
 
-/** Room for what lies over the picture, in CSS pixels. On narrow screens the tools stand at the right. */
+/** Room for what lies over the picture, in CSS pixels. On narrow and on low screens the tools stand at the right. */
 const INSETS = { top: 72, bottom: 76 };
-const NARROW = '(max-width: 620px)';
-const TOOLS = 48;
+const ASIDE = '(max-width: 1239px), (max-height: 500px)';
+const TOOLS = 60;
 
 /** The ways to stand a scan upright, in the order in which the button goes through them: toys and statues, land and rooms, depth cameras (whose y points down), and the rest. @type {Record<Axis, string>} */
 const UPS = { y: 'Y', z: 'Z', '-y': '−Y', '-z': '−Z', x: 'X', '-x': '−X' };
 
-/** Legends in the page's numbers. */
-const WORDS = { ...PAINT_WORDS, length: format.length, percent: format.percent };
+/** Paints that cost nothing: colours that are there already. */
+const READY = new Set(['natural', 'plain']);
 
 const VIEWS = /** @type {const} */ (['points', 'reduced', 'mesh', 'compare']);
 const NAMES = { points: 'Scan', reduced: 'Reduced points', mesh: 'Mesh', compare: 'Comparison' };
@@ -40,10 +43,16 @@ export class Look {
   #edges = byId('edges', HTMLInputElement);
   #parallel = byId('parallel', HTMLInputElement);
   #boxes = byId('boxes', HTMLInputElement);
+  #pointSize = byId('point-size', HTMLInputElement);
   /** @type {Scan | null} */
   #scan = null;
   /** @type {Outcome | null} */
   #outcome = null;
+  /** What was kept to be compared with. @type {Outcome | null} */
+  #kept = null;
+  /** It has been put beside another. */
+  #beside = false;
+  #keep = byId('keep-mesh', HTMLButtonElement);
   /** @type {Choice} */
   #view = 'points';
   /** The person's choice for this scan; finishing a job does not change it. @type {Choice | null} */
@@ -54,7 +63,10 @@ export class Look {
   #paint = 'natural';
   /** The layers that have these colours; the others get them when they are shown. @type {Map<View, Paint>} */
   #painted = new Map();
-  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null);
+  #painting = new Painting();
+  /** Layers whose colours are being made. @type {Set<View>} */
+  #awaited = new Set();
+  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
   #split = new Split(() => this.#show(this.#view));
 
   /**
@@ -76,6 +88,8 @@ export class Look {
     this.#paints.addEventListener('change', (event) => this.#choosePaint(/** @type {PaintName} */ (valueOf(event))));
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
     this.#boxes.addEventListener('change', () => this.#showBoxes());
+    this.#pointSize.addEventListener('input', () => this.#sizePoints());
+    this.#keep.addEventListener('click', () => this.#keepMesh());
     this.#parallel.addEventListener('change', () => viewer && (viewer.parallel = this.#parallel.checked));
     for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-side]'))) {
       button.addEventListener('click', () => this.#lookFrom(/** @type {Side} */ (button.dataset.side)));
@@ -97,7 +111,10 @@ export class Look {
 
   opened(/** @type {Scan} */ scan) {
     this.#scan = scan;
-    this.#outcome = null;
+    this.#outcome = this.#kept = null;
+    this.#painting.reset();
+    this.#keep.hidden = true;
+    this.#split.offerKept(false);
     if (!this.#wished) this.#chosen = null;
     this.#wished = false;
     this.#viewer?.show(bare({ ...scan.cloud, normals: undefined }), { frame: scan.frame });
@@ -113,8 +130,29 @@ export class Look {
     this.#viewer?.set('mesh', mesh && bare(mesh));
     for (const view of VIEWS) radio('view', view).disabled = view === 'mesh' && !mesh;
     this.#split.offerMesh(Boolean(mesh));
+    this.#keep.hidden = !mesh;
     this.#showBoxes();
+    if (this.#kept && mesh && !this.#beside) {
+      this.#beside = true;
+      this.#split.putBeside();
+      this.#chosen = 'compare';
+      this.#changed();
+    }
     this.#settle();
+  }
+
+  /** Keeps the mesh, so that the next one is shown beside it. */
+  #keepMesh() {
+    const outcome = this.#outcome;
+    if (!outcome?.mesh) return;
+    this.#kept = outcome;
+    this.#beside = false;
+    this.#viewer?.set('kept', bare(outcome.mesh));
+    this.#painted.delete('kept');
+    this.#awaited.delete('kept');
+    this.#split.offerKept(true);
+    this.#show(this.#view);
+    announce(say('The mesh is kept. The next one is shown beside it.'));
   }
 
   /** Has the person choose a triangle of the mesh in the picture, or no more. @param {import('./piece.js').Chosen | null} chosen */
@@ -172,19 +210,39 @@ export class Look {
     const compared = view === 'compare';
     this.#split.show(compared);
     const { left, right } = this.#split.sides;
+    this.#split.describe((side) => (side === 'kept' ? this.#kept : this.#outcome));
     if (compared) this.#color(left);
-    const paint = this.#color(compared ? right : view);
-    this.#legend.show(paint?.legend ?? null);
+    const seen = compared ? right : /** @type {View} */ (view);
+    const paint = this.#color(seen);
+    this.#legend.show(paint?.legend ?? null, this.#awaited.has(seen));
     if (this.#viewer) this.#viewer.view = compared ? { left, right, at: this.#split.at } : view;
   }
 
   /** Gives a layer the chosen colours, unless it has them. */
   #color(/** @type {View} */ view) {
     const known = this.#painted.get(view);
-    const subject = this.#subject;
-    const drawn = view === 'points' || Boolean(this.#outcome?.[view]);
+    const [layer, outcome] = view === 'kept' ? /** @type {const} */ (['mesh', this.#kept]) : [view, this.#outcome];
+    const subject = this.#subjectOf(outcome);
+    const drawn = layer === 'points' || Boolean(outcome?.[layer]);
     if (known || !subject || !drawn) return known;
-    const paint = paintOf(this.#paint, view, subject, WORDS);
+    if (READY.has(this.#paint) || !canPaint(this.#paint, subject)) return this.#put(view, paintOf(this.#paint, layer, subject, WORDS));
+    if (!this.#awaited.has(view)) this.#make(view, layer, subject);
+    return undefined;
+  }
+
+  /** Has colours made that take a while. @param {View} view @param {'points' | 'reduced' | 'mesh'} layer @param {Subject} subject */
+  async #make(view, layer, subject) {
+    const awaited = this.#awaited.add(view);
+    this.#root.dataset.painting = '';
+    const paint = await this.#painting.paint(this.#paint, layer, subject);
+    if (awaited !== this.#awaited) return;
+    awaited.delete(view);
+    if (!awaited.size) delete this.#root.dataset.painting;
+    this.#put(view, paint);
+    this.#show(this.#view);
+  }
+
+  #put(/** @type {View} */ view, /** @type {Paint} */ paint) {
     this.#viewer?.paint(view, paint);
     this.#painted.set(view, paint);
     return paint;
@@ -209,6 +267,8 @@ export class Look {
   /** What can be chosen now; every layer is to be coloured anew. */
   #offerPaints() {
     this.#painted.clear();
+    this.#awaited = new Set();
+    delete this.#root.dataset.painting;
     const subject = this.#subject;
     if (!subject) return;
     for (const name of PAINTS) {
@@ -224,9 +284,26 @@ export class Look {
     this.#viewer?.showBoxes(this.#boxes.checked && cells ? { positions: cells, origin } : null);
   }
 
+  /** The slider's steps multiply: its middle is the size that points have of themselves, its ends a quarter and four times that. */
+  #sizePoints() {
+    const scale = 4 ** this.#pointSize.valueAsNumber;
+    if (this.#viewer) this.#viewer.pointSize = scale;
+    this.#pointSize.setAttribute('aria-valuetext', format.times(scale));
+  }
+
+  /** The picture as it is shown, without what lies over it. @param {string} type @param {number} [quality] */
+  async picture(type, quality) {
+    return (await this.#viewer?.toBlob(type, quality)) ?? null;
+  }
+
   get #subject() {
+    return this.#subjectOf(this.#outcome);
+  }
+
+  #subjectOf(/** @type {Outcome | null} */ outcome) {
     const { cloud, frame } = this.#scan ?? {};
-    return cloud && { cloud, frame, reduced: this.#outcome?.reduced, mesh: this.#outcome?.mesh };
+    const other = outcome === this.#kept ? this.#outcome : this.#kept;
+    return cloud && { cloud, frame, reduced: outcome?.reduced, mesh: outcome?.mesh, beside: other?.mesh };
   }
 
   #lookFrom(/** @type {Side} */ side) {
@@ -257,7 +334,7 @@ export class Look {
   }
 
   /** Stands what is shown on another side, or on a plane with that normal. */
-  stand(/** @type {Axis | [number, number, number]} */ up) {
+  stand(/** @type {Axis | [number, number, number] | 'auto'} */ up) {
     if (this.#viewer) this.#viewer.up = up;
   }
 }
@@ -266,9 +343,9 @@ export class Look {
 function openViewer() {
   try {
     const viewer = createViewer(byId('canvas', HTMLCanvasElement), { embedded: false, insets: INSETS });
-    const narrow = matchMedia(NARROW);
-    const follow = () => (viewer.insets = { right: narrow.matches ? TOOLS : 0 });
-    narrow.addEventListener('change', follow);
+    const aside = matchMedia(ASIDE);
+    const follow = () => (viewer.insets = { right: aside.matches ? TOOLS : 0 });
+    aside.addEventListener('change', follow);
     follow();
     return viewer;
   } catch (error) {

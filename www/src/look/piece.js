@@ -18,8 +18,9 @@ export class PieceChoice {
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {import('pointweave/viewer').Viewer['pick']} pick
+   * @param {() => Pick<import('pointweave/viewer').Insets, 'left' | 'right'>} insets  beside the middle of the picture
    */
-  constructor(canvas, pick) {
+  constructor(canvas, pick, insets) {
     this.#canvas = canvas;
     const choose = (/** @type {number} */ x, /** @type {number} */ y) => {
       const found = pick(x, y);
@@ -35,7 +36,8 @@ export class PieceChoice {
     canvas.addEventListener('keydown', (event) => {
       if (!this.#chosen || event.key !== 'Enter') return;
       event.preventDefault();
-      choose(canvas.clientWidth / 2, canvas.clientHeight / 2);
+      const { left, right } = insets();
+      choose((canvas.clientWidth + left - right) / 2, canvas.clientHeight / 2);
     });
   }
 

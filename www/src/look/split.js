@@ -1,6 +1,9 @@
 import { byId } from '../dom.js';
+import * as format from '../results/format.js';
+import { say } from '../words/say.js';
 
 /** @import { View } from './look.js' */
+/** @import { Outcome } from '../session/session.js' */
 
 const STEP = 0.02;
 
@@ -11,6 +14,7 @@ export class Split {
   #handle = byId('split-handle', HTMLElement);
   #left = byId('split-left', HTMLSelectElement);
   #right = byId('split-right', HTMLSelectElement);
+  #words = [byId('split-left-words', HTMLElement), byId('split-right-words', HTMLElement)];
   #changed;
   /** Where it is, as a share of the width. */
   at = 0.5;
@@ -51,6 +55,32 @@ export class Split {
     }
     if (!possible && this.#right.value === 'mesh') this.#right.value = 'reduced';
     if (possible && this.#right.value === 'reduced' && this.#left.value === 'points') this.#right.value = 'mesh';
+  }
+
+  /** A mesh was kept, to be put beside another; or there is none. */
+  offerKept(/** @type {boolean} */ possible) {
+    for (const select of [this.#left, this.#right]) {
+      for (const option of select.options) if (option.value === 'kept') option.hidden = option.disabled = !possible;
+      if (!possible && select.value === 'kept') select.value = select === this.#left ? 'points' : 'mesh';
+    }
+  }
+
+  /** The kept mesh at the left, the mesh of now at the right. */
+  putBeside() {
+    this.#left.value = 'kept';
+    this.#right.value = 'mesh';
+  }
+
+  /** What meshes at either side are made of, and how far from the scan they are. @param {(view: View) => Outcome | null} outcomeOf */
+  describe(outcomeOf) {
+    [this.#left, this.#right].forEach((select, i) => {
+      const report = select.value === 'mesh' || select.value === 'kept' ? outcomeOf(/** @type {View} */ (select.value))?.mesh?.report : undefined;
+      this.#words[i].textContent = report
+        ? say('{points} points, {triangles} triangles, RMS {error}', {
+          points: format.short(report.outputPoints), triangles: format.short(report.triangles), error: format.percent(report.distance.rms),
+        })
+        : '';
+    });
   }
 
   #move(/** @type {number} */ to) {

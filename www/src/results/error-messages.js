@@ -93,6 +93,16 @@ export const MESSAGES = {
     text: 'The page was built without something that this needs.',
     advice: DEFECT,
   },
+  'empty-folder': {
+    title: 'There are no files in this folder',
+    text: 'A folder was dropped, and nothing in it is a file that can be seen.',
+    advice: 'Drop the scan itself.',
+  },
+  'kept-no-more': {
+    title: 'This scan is not kept any more',
+    text: 'A browser keeps the last few scans on this device, and this one made room or was forgotten.',
+    advice: 'Open the file again.',
+  },
   'not-found': {
     title: 'The scan could not be fetched',
     text: 'The address of this page asks for a file that did not arrive.',

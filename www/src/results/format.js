@@ -23,6 +23,9 @@ function superscript(/** @type {string} */ digits) {
   return digits.replace('+', '').replace('-', '⁻').replace(/\d/g, (digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)]);
 }
 
+/** A factor: 1.5×. */
+export const times = (/** @type {number} */ factor) => `${digits.format(factor)}×`;
+
 /** A fraction as a percentage with two digits. */
 export function percent(/** @type {number} */ fraction) {
   return `${new Intl.NumberFormat('en', { maximumSignificantDigits: 2 }).format(100 * fraction)} %`;
@@ -31,6 +34,12 @@ export function percent(/** @type {number} */ fraction) {
 export function duration(/** @type {number} */ ms) {
   if (ms < 1000) return `${whole.format(ms)} ms`;
   return ms < 60_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.floor(ms / 60_000)} min ${Math.round((ms % 60_000) / 1000)} s`;
+}
+
+/** A volume in cubic millimetres, in the unit that suits its size. */
+export function volume(/** @type {number} */ cubic) {
+  const [unit, factor] = cubic < 1000 ? ['mm³', 1] : cubic < 1e9 ? ['cm³', 1e3] : ['m³', 1e9];
+  return `${length(cubic / Number(factor))} ${unit}`;
 }
 
 export function bytes(/** @type {number} */ n) {

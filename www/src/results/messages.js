@@ -1,4 +1,5 @@
 import { byId } from '../dom.js';
+import { say } from '../words/say.js';
 import { MESSAGES } from './error-messages.js';
 
 /** The card over the picture; it leaves everything else usable. */
@@ -15,14 +16,23 @@ export class MessageCard {
     return !this.#box.hidden;
   }
 
-  /** @param {any} error  @param {string} about  what the person had opened */
-  showError(error, about) {
+  /**
+   * @param {any} error
+   * @param {string} about  what the person had opened
+   * @param {{ standIn?: boolean }} [how]  whether a sample is shown in its place
+   */
+  showError(error, about, { standIn = false } = {}) {
     const code = typeof error?.code === 'string' ? error.code : 'internal';
+    this.show(code, `${about}: ${error?.message ?? error} [${code}]`, { standIn });
+  }
+
+  /** @param {string} code @param {string} detail @param {{ standIn?: boolean }} [how] */
+  show(code, detail, { standIn = false } = {}) {
     const { title, text, advice } = MESSAGES[code] ?? MESSAGES.internal;
     byId('message-title', HTMLElement).textContent = title;
     byId('message-text', HTMLElement).textContent = text;
-    byId('message-advice', HTMLElement).textContent = advice;
-    byId('message-detail', HTMLElement).textContent = `${about}: ${error?.message ?? error} [${code}]`;
+    byId('message-advice', HTMLElement).textContent = standIn ? `${advice} ${say('A sample is shown instead.')}` : advice;
+    byId('message-detail', HTMLElement).textContent = detail;
     this.#box.hidden = false;
   }
 

@@ -1,7 +1,6 @@
 import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
 import * as format from './format.js';
-import { countHoles } from '../look/holes.js';
 import { stageWords } from './stages.js';
 
 /** @import { Outcome, Scan } from '../session/session.js' */
@@ -70,7 +69,7 @@ export class Numbers {
     this.#set('triangles', mesh?.report.triangles, format.count);
     this.#set('reduction', report.outputPoints / report.inputPoints, format.percent);
     this.#set('boundaryEdges', mesh?.report.boundaryEdges, format.count);
-    this.#set('holes', mesh ? holesOf(mesh) : undefined, format.count);
+    this.#set('holes', mesh?.report.holes.filter(({ closed }) => !closed).length, format.count);
     this.#set('components', mesh?.report.components, format.count);
     this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
     this.#set('totalMs', report.totalMs, format.duration);
@@ -113,11 +112,6 @@ export class Numbers {
       }),
     );
   }
-}
-
-/** Open borders cost a look at every edge, so only where there are some. */
-function holesOf(/** @type {import('pointweave').SurfaceMesh} */ { report, indices, positions }) {
-  return report.boundaryEdges ? countHoles(indices, positions.length / 3) : 0;
 }
 
 function sentence(/** @type {string} */ reason) {

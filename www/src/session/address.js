@@ -1,8 +1,8 @@
 import { isSample } from '../controls/samples.js';
+import { entriesOf } from '../controls/settings.js';
 
 /**
- * @import { Settings } from '../controls/settings.js'
- * @import { Scan } from './session.js'
+ * @import { Value } from '../state/shown.js'
  *
  * The part of the address after #: the sample, the settings that were chosen, and what is shown. A file of the
  * person's is never in it. `?src=` before it names a file beside the page.
@@ -21,20 +21,15 @@ export function readAddress() {
   };
 }
 
-/**
- * The address that shows the same again.
- * @param {Scan | null} scan
- * @param {Settings} settings
- * @param {{ view: string, paint: string }} look
- */
-export function addressOf(scan, settings, { view, paint }) {
+/** The address that shows the same again. @param {Value} value */
+export function addressOf({ scan, settings, look: { view, paint } }) {
   const words = new URLSearchParams();
-  if (scan?.model) words.set('sample', scan.model);
-  for (const [key, value] of settings.entries()) words.set(key, value);
+  if (scan && 'model' in scan) words.set('sample', scan.model);
+  for (const [key, value] of entriesOf(settings)) words.set(key, value);
   if (view !== 'mesh') words.set('view', view);
   if (paint !== 'natural') words.set('colors', paint);
   const url = new URL(location.href);
-  url.search = scan?.src ? new URLSearchParams({ src: scan.src }).toString() : '';
+  url.search = scan && 'src' in scan ? new URLSearchParams({ src: scan.src }).toString() : '';
   url.hash = words.toString();
   return url.href;
 }

@@ -1,14 +1,16 @@
 import { byId } from '../dom.js';
+import { filesOf } from './dropped.js';
 
 /**
- * Files come in by dropping them anywhere, by choosing or by pasting; points may be pasted as text, too.
- * @param {(files: File[]) => void} open
+ * Files and folders come in by dropping them anywhere, by choosing or by pasting; points may be pasted as text, too.
+ * @param {(files: { file: File, path: string }[]) => void} take
  * @returns {() => void} shows the chooser
  */
-export function acceptFiles(open) {
+export function acceptFiles(take) {
   const input = byId('file', HTMLInputElement);
   const veil = byId('veil', HTMLElement);
   const choose = () => input.click();
+  const open = (/** @type {File[]} */ files) => take(files.map((file) => ({ file, path: file.name })));
 
   input.addEventListener('change', () => {
     open([...(input.files ?? [])]);
@@ -42,7 +44,7 @@ export function acceptFiles(open) {
     if (!carriesFiles(event)) return;
     event.preventDefault();
     show(0);
-    open([...(event.dataTransfer?.files ?? [])]);
+    if (event.dataTransfer) filesOf(event.dataTransfer).then(take);
   });
   return choose;
 }

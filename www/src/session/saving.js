@@ -1,31 +1,41 @@
 import { announce, byId, element } from '../dom.js';
+import { compressAside } from './compressing.js';
 import { saveFile } from './files.js';
 import * as format from '../results/format.js';
+import { printingWords, solidOf } from '../results/printing.js';
+import { say } from '../words/say.js';
 
 /**
- * @import { OutputFormat } from 'pointweave'
+ * @import { WriteOptions } from 'pointweave'
  * @import { Outcome, Session } from './session.js'
  * @typedef {'mesh' | 'reduced'} What
  */
 
-/** What each kind of file is good for; the first that the package writes is the one on the button. */
-const FORMATS = /** @type {Record<What, Record<string, string>>} */ ({
+/**
+ * A kind of file: what it is called, what it is good for, and how it is written. `prints`: what it is good for where the mesh is
+ * watertight.
+ * @typedef {{ label: string, use: string, prints?: string, options: WriteOptions }} Kind
+ */
+
+/** The first that the package writes is the one on the button. @type {Record<What, Record<string, Kind>>} */
+const FORMATS = {
   mesh: {
-    glb: 'for the web, phones and viewers',
-    ply: 'keeps everything',
-    obj: 'for modelling programs',
-    stl: 'for 3D printing',
-    '3mf': 'for 3D printing, in colour',
-    usdz: 'for iPhone and iPad',
+    'glb-small': { label: 'GLB', use: 'small: for the web and phones', options: { format: 'glb', quantize: true, meshopt: compressAside } },
+    glb: { label: 'GLB', use: 'plain: for every program', options: { format: 'glb' } },
+    ply: { label: 'PLY', use: 'keeps everything', options: { format: 'ply' } },
+    obj: { label: 'OBJ', use: 'for modelling programs', options: { format: 'obj' } },
+    stl: { label: 'STL', use: 'triangles alone', prints: 'for 3D printing', options: { format: 'stl' } },
+    '3mf': { label: '3MF', use: 'triangles and colours', prints: 'for 3D printing, in colour', options: { format: '3mf' } },
+    usdz: { label: 'USDZ', use: 'for iPhone and iPad', options: { format: 'usdz' } },
   },
   reduced: {
-    ply: 'keeps everything',
-    glb: 'for the web and viewers',
-    xyz: 'plain text',
-    las: 'for surveyors',
-    pcd: 'for robots',
+    ply: { label: 'PLY', use: 'keeps everything', options: { format: 'ply' } },
+    glb: { label: 'GLB', use: 'for the web and viewers', options: { format: 'glb' } },
+    xyz: { label: 'XYZ', use: 'plain text', options: { format: 'xyz' } },
+    las: { label: 'LAS', use: 'for surveyors', options: { format: 'las' } },
+    pcd: { label: 'PCD', use: 'for robots', options: { format: 'pcd' } },
   },
-});
+};
 const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };
 
 /** Saves what was made: one button for most people, and every format with its size. */
@@ -37,6 +47,11 @@ export class Saving {
   #detail = byId('save-detail', HTMLElement);
   #menu = byId('formats', HTMLDetailsElement);
   #list = byId('format-list', HTMLElement);
+  #note = byId('save-note', HTMLElement);
+  #printing = byId('printing', HTMLElement);
+  #close = byId('close-holes', HTMLButtonElement);
+  /** The mesh can be printed. */
+  #prints = false;
   /** What is offered now; files of an earlier one are not waited for. @type {Outcome | null} */
   #outcome = null;
   /** Written files of the outcome. @type {Map<string, Promise<Blob | null>>} */
@@ -47,11 +62,13 @@ export class Saving {
   /**
    * @param {Session} session
    * @param {(error: unknown, name: string) => void} fail
+   * @param {() => void} close  has all holes closed
    */
-  constructor(session, fail) {
+  constructor(session, fail, close) {
     this.#session = session;
     this.#fail = fail;
     this.#button.addEventListener('click', () => this.#first && this.#save(...this.#first));
+    this.#close.addEventListener('click', close);
     this.#menu.addEventListener('toggle', () => this.#menu.open && this.#listAll());
   }
 
@@ -64,6 +81,8 @@ export class Saving {
     this.#button.disabled = true;
     this.#menu.hidden = !outcome;
     this.#detail.textContent = '';
+    this.#note.textContent = '';
+    this.#showPrinting(outcome);
     if (!outcome) return;
     const what = outcome.mesh ? 'mesh' : 'reduced';
     this.#what.textContent = outcome.mesh ? 'Save the mesh' : 'Save the points';
@@ -72,11 +91,30 @@ export class Saving {
       if (outcome !== this.#outcome) return;
       if (!file) continue;
       this.#first = [what, name];
-      this.#detail.textContent = `${name.toUpperCase()} · ${format.bytes(file.size)}`;
+      this.#detail.textContent = `${FORMATS[what][name].label} · ${format.bytes(file.size)}`;
       this.#button.disabled = false;
       break;
     }
+    if (this.#first?.[1] === 'glb-small') {
+      const plain = await this.#file('mesh', 'glb');
+      if (outcome !== this.#outcome) return;
+      if (plain) this.#note.textContent = say('Compressed. The plain GLB for programs that cannot read that has {size}; it is among the other formats.', { size: format.bytes(plain.size) });
+    }
     if (this.#menu.open) await this.#listAll();
+  }
+
+  /** Whether it can be printed and how large it is, or what is missing and what helps. */
+  #showPrinting(/** @type {Outcome | null} */ outcome) {
+    const mesh = outcome?.mesh;
+    this.#printing.hidden = !mesh;
+    this.#close.hidden = true;
+    this.#prints = false;
+    if (!mesh) return;
+    const solid = solidOf(mesh);
+    const { ready, words } = printingWords(solid, mesh.unit);
+    this.#prints = ready;
+    this.#printing.textContent = words;
+    this.#close.hidden = solid.closed || this.#session.settings.get('boundary') === 'closed';
   }
 
   /** A row for each format that the package writes; sizes appear as the files are made. */
@@ -86,21 +124,22 @@ export class Saving {
     for (const what of /** @type {What[]} */ (outcome.mesh ? ['mesh', 'reduced'] : ['reduced'])) {
       const rows = element('ul');
       this.#list.append(element('h3', { textContent: NAMES[what] }), rows);
-      for (const [name, use] of Object.entries(FORMATS[what])) {
+      for (const name of Object.keys(FORMATS[what])) {
         const file = await this.#file(what, name);
         if (outcome !== this.#outcome) return;
-        if (file) rows.append(this.#row(what, name, use, file.size));
+        if (file) rows.append(this.#row(what, name, file.size));
       }
     }
   }
 
-  #row(/** @type {What} */ what, /** @type {string} */ name, /** @type {string} */ use, /** @type {number} */ size) {
+  #row(/** @type {What} */ what, /** @type {string} */ name, /** @type {number} */ size) {
+    const { label, use, prints } = FORMATS[what][name];
     const row = element('li');
     const button = element('button', { type: 'button', className: 'format', id: `save-${what}-${name}` });
     button.append(
       element('span', { className: 'visually-hidden', textContent: `Save the ${NAMES[what].toLowerCase()} as ` }),
-      element('strong', { textContent: name.toUpperCase() }),
-      element('span', { textContent: use }),
+      element('strong', { textContent: label }),
+      element('span', { textContent: (this.#prints && prints) || use }),
       element('data', { textContent: format.bytes(size), value: String(size) }),
     );
     button.addEventListener('click', () => this.#save(what, name));
@@ -113,7 +152,7 @@ export class Saving {
     const key = `${what} ${name}`;
     let file = this.#files.get(key);
     if (!file) {
-      file = this.#session.file(what, /** @type {OutputFormat} */ (name)).then(
+      file = this.#session.file(what, FORMATS[what][name].options).then(
         (bytes) => new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)], { type: 'application/octet-stream' }),
         (error) => {
           if (error?.code !== 'bad-option') this.#fail(error, name.toUpperCase());
@@ -126,7 +165,7 @@ export class Saving {
   }
 
   async #save(/** @type {What} */ what, /** @type {string} */ name) {
-    const title = `${this.#outcome?.scan.file}-${what}.${name}`;
+    const title = `${this.#outcome?.scan.file}-${what}.${FORMATS[what][name].options.format}`;
     const file = await this.#file(what, name);
     if (!file) return;
     saveFile(file, title);

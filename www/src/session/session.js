@@ -1,9 +1,11 @@
 import { createEngine, flip, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
+import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { splitOrigin } from './origin.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
+import { Emitter } from '../state/emitter.js';
 
 /**
  * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
@@ -12,9 +14,11 @@ import { Settings, TARGETS } from '../controls/settings.js';
  * @import { Target } from '../controls/settings.js'
  *
  * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
- * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File }} Source
+ * `key`: under which the browser keeps a file, `columns`: what those of a table were said to hold.
+ * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File, key?: string, columns?: string[] }} Source
+ * What the file itself says of how it stands. @typedef {Pick<PointCloud, 'up' | 'unit'>} Own
  * @typedef {PointCloud & Partial<Pick<FileCloud, 'file' | 'columns' | 'skipped'>>} Opened
- * @typedef {Source & { cloud: Opened, count: number, frame: Frame }} Scan
+ * @typedef {Source & { cloud: Opened, count: number, frame: Frame, own: Own }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
@@ -33,23 +37,31 @@ const REMEMBERED = { keep: true };
 const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
 
 /**
- * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page.
- *
- * Events: `state` (a State), `opened` (a Scan), `progress` ({stage, overall}), `made` (an Outcome),
- * `turned` ({outcome, piece}), `cancelled`, `failed` ({error, title, given}); the value is the event's `detail`.
+ * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page. `failed`: a source that could
+ * not be opened, or the title of a scan that could not be worked on.
+ * @extends {Emitter<{
+ *   state: State, opened: Scan, progress: { stage: string, overall: number }, made: Outcome, turned: Outcome, cancelled: undefined,
+ *   failed: { error: any, title: string, given?: File, model?: SampleName },
+ * }>}
  */
-export class Session extends EventTarget {
+export class Session extends Emitter {
   settings = new Settings();
   /** @type {Scan | null} */
   scan = null;
   /** @type {Outcome | null} the last result of the open scan */
   outcome = null;
+  /** The same before pieces were turned over. @type {Outcome | null} */
+  #whole = null;
+  /** Triangles whose pieces are turned over. @type {number[]} */
+  turned = [];
   /** The options of the last job. */
   #asked = '';
   /** Which way was up for it. */
   #stood = '';
   /** @type {AbortController | null} */
   #job = null;
+  /** A result of the open scan is asked for and not there yet. A file that cannot be read only interrupts that; Cancel ends it. */
+  #wanted = false;
   /** What is computed beside the job, and ends with it. @type {AbortController | null} */
   #aside = null;
 
@@ -62,21 +74,28 @@ export class Session extends EventTarget {
   /**
    * Reads a file of the person's and makes its mesh.
    * @param {File} file
-   * @param {{ columns?: string[], beside?: File[] }} [options] what the columns of a table hold; files that a mesh may name
+   * @param {{ columns?: string[], beside?: File[], key?: string }} [options] what the columns of a table hold; files that a mesh may name; where
+   *   the browser keeps it
    */
-  openFile(file, { columns, beside } = {}) {
-    const source = { title: file.name, file: stem(file.name), given: file };
-    return this.#open(source, (signal) => read(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) }));
+  openFile(file, { columns, beside, key } = {}) {
+    const source = { title: file.name, file: stem(file.name), given: file, key, columns };
+    return this.#open(source, async (signal) => {
+      const options = { name: file.name, columns, beside, signal, onProgress: this.#report(signal) };
+      return read(file, options).catch(async (error) => {
+        // The page's own small files, and those of other programs.
+        if (error?.code !== 'unsupported-file' || error.found !== COMPRESSED) throw error;
+        const plain = await expandAside(new Uint8Array(await file.arrayBuffer()));
+        signal.throwIfAborted();
+        return read(plain, options);
+      });
+    });
   }
 
   /** Keeps with the scan, and with what was made of it, which way is up and what a coordinate is. */
-  stand(/** @type {{ up?: [number, number, number], unit?: Unit }} */ { up, unit }) {
+  stand(/** @type {Own} */ { up, unit }) {
     const { cloud } = this.scan ?? {};
     if (!cloud) return;
-    for (const one of [cloud, this.outcome?.reduced, this.outcome?.mesh]) {
-      if (one && up) one.up = up;
-      if (one && unit) one.unit = unit;
-    }
+    for (const one of [cloud, this.outcome?.reduced, this.outcome?.mesh]) if (one) Object.assign(one, { up, unit });
   }
 
   /** The result was made when another side was up, which helps to tell which side is out: made again, it may be another. */
@@ -109,22 +128,32 @@ export class Session extends EventTarget {
     const scan = this.scan;
     if (!scan) return;
     const job = this.#begin('working');
+    this.#wanted = true;
     this.#asked = JSON.stringify(this.settings.options(this.target));
     this.#stood = JSON.stringify(scan.cloud.up);
     try {
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
-      this.outcome = outcome;
+      this.outcome = this.#whole = outcome;
+      this.turned = [];
+      this.#wanted = false;
       this.#end(job, 'made', outcome);
     } catch (error) {
+      if (!job.signal.aborted) this.#wanted = false;
       this.#end(job, 'failed', { error, title: scan.title });
     }
+  }
+
+  /** Something is being read or made. */
+  get busy() {
+    return this.#job !== null;
   }
 
   /** Stops the running job, if there is one. */
   cancel() {
     if (!this.#job) return;
     this.#job.abort();
+    this.#wanted = false;
     this.#asked = '';
     this.#end(this.#job, 'cancelled');
   }
@@ -159,17 +188,23 @@ export class Session extends EventTarget {
     }
   }
 
-  /** Turns the mesh to its other side, or the piece of a triangle alone: that only until the next job. @param {number} [triangle] */
-  flip(triangle) {
-    const { outcome, settings } = this;
-    if (!outcome?.mesh) return;
-    const mesh = flip(outcome.mesh, { triangle });
-    this.outcome = { ...outcome, mesh, reduced: mesh.cloud };
-    if (triangle === undefined) {
-      settings.set('flip', !settings.get('flip'));
-      this.#asked = JSON.stringify(settings.options(this.target));
-    }
-    this.#emit('turned', { outcome: this.outcome, piece: triangle !== undefined });
+  /** Turns all of the mesh to its other side. */
+  flip() {
+    if (!this.#whole?.mesh) return;
+    const { settings } = this;
+    this.#whole = withMesh(this.#whole, flip(this.#whole.mesh));
+    settings.set('flip', !settings.get('flip'));
+    this.#asked = JSON.stringify(settings.options(this.target));
+    this.turn(this.turned);
+  }
+
+  /** Turns over the pieces of these triangles and no others, until the next job. */
+  turn(/** @type {number[]} */ triangles) {
+    if (!this.#whole?.mesh) return;
+    this.turned = triangles;
+    const mesh = triangles.reduce((turned, triangle) => flip(turned, { triangle }), this.#whole.mesh);
+    this.outcome = triangles.length ? withMesh(this.#whole, mesh) : this.#whole;
+    this.emit('turned', this.outcome);
   }
 
   /** Ends {@link compare}. */
@@ -181,12 +216,12 @@ export class Session extends EventTarget {
   /**
    * The bytes of a file of what was made.
    * @param {'reduced' | 'mesh'} what
-   * @param {import('pointweave').OutputFormat} format
+   * @param {import('pointweave').WriteOptions} options
    */
-  async file(what, format) {
+  async file(what, options) {
     const result = this.outcome?.[what];
     if (!result) throw new Error(`there is no ${what} to write yet`);
-    return write(result, { format });
+    return write(result, options);
   }
 
   /**
@@ -200,13 +235,13 @@ export class Session extends EventTarget {
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = { ...source, cloud, count, frame: frameOf(cloud) };
-      this.outcome = null;
-      this.#emit('opened', this.scan);
+      this.scan = { ...source, cloud, count, frame: frameOf(cloud), own: { up: cloud.up, unit: cloud.unit } };
+      this.outcome = this.#whole = null;
+      this.emit('opened', this.scan);
     } catch (error) {
-      this.#end(job, 'failed', { error, title: source.title, given: source.given });
-      // The scan that was open stays; the job that this file interrupted goes on.
-      if (this.#job === null && this.scan && !this.outcome) await this.run();
+      this.#end(job, 'failed', { error, ...source });
+      // The scan that was open stays; the job that this file interrupted goes on, one that was cancelled does not.
+      if (this.#job === null && this.#wanted) await this.run();
       return;
     }
     await this.run();
@@ -223,7 +258,7 @@ export class Session extends EventTarget {
     } catch (error) {
       if (signal.aborted || !NO_SURFACE.has(/** @type {any} */ (error).code)) throw error;
       const reduced = await reduce(scan.cloud, { ...options, signal });
-      this.#emit('failed', { error, title: scan.title });
+      this.emit('failed', { error, title: scan.title });
       return { scan, reduced, mesh: null };
     }
   }
@@ -231,7 +266,7 @@ export class Session extends EventTarget {
   /** Passes progress on until the job is aborted. */
   #report(/** @type {AbortSignal} */ signal) {
     return (/** @type {Pick<Progress, 'overall'> & { stage: string }} */ progress) => {
-      if (!signal.aborted) this.#emit('progress', progress);
+      if (!signal.aborted) this.emit('progress', progress);
     };
   }
 
@@ -239,21 +274,28 @@ export class Session extends EventTarget {
     this.#job?.abort();
     this.stopComparing();
     this.#job = new AbortController();
-    this.#emit('state', state);
+    this.emit('state', state);
     return this.#job;
   }
 
-  /** Reports how a job ended, unless another has taken its place. */
-  #end(/** @type {AbortController} */ job, /** @type {string} */ event, /** @type {unknown} */ detail = undefined) {
+  /**
+   * Reports how a job ended, unless another has taken its place.
+   * @param {AbortController} job
+   * @param {'made' | 'failed' | 'cancelled'} event
+   * @param {any} [detail]
+   */
+  #end(job, event, detail) {
     if (this.#job !== job) return;
     this.#job = null;
-    this.#emit('state', 'ready');
-    this.#emit(event, detail);
+    this.emit('state', 'ready');
+    this.emit(event, detail);
   }
 
-  #emit(/** @type {string} */ type, /** @type {unknown} */ detail) {
-    this.dispatchEvent(new CustomEvent(type, { detail }));
-  }
+}
+
+/** @param {Outcome} outcome @param {SurfaceMesh} mesh @returns {Outcome} */
+function withMesh(outcome, mesh) {
+  return { ...outcome, mesh, reduced: mesh.cloud };
 }
 
 /** A file's name without its ending. */

@@ -8,6 +8,10 @@ export class Sharing {
   #link = byId('share-link', HTMLInputElement);
   #embed = byId('share-embed', HTMLTextAreaElement);
   #note = byId('share-note', HTMLElement);
+  /** A saved poster, and the mesh that it is of. */
+  #poster = { of: '', name: '' };
+  #file = '';
+  #title = '';
 
   constructor() {
     for (const [field, button] of /** @type {const} */ ([['share-link', 'copy-link'], ['share-embed', 'copy-embed']])) {
@@ -29,7 +33,19 @@ export class Sharing {
     this.#note.textContent = scan && !scan.model && !scan.src
       ? 'The link holds your settings. The scan itself stays on this device: send it yourself.'
       : 'Whoever opens it sees this scan with these settings.';
-    this.#embed.value = snippet(file, scan?.title ?? 'A scan');
+    this.#file = file;
+    this.#title = scan?.title ?? 'A scan';
+    this.#write();
+  }
+
+  /** A poster was saved: the snippet names it. */
+  posted(/** @type {string} */ name) {
+    this.#poster = { of: this.#file, name };
+    this.#write();
+  }
+
+  #write() {
+    this.#embed.value = snippet(this.#file, this.#title, this.#poster.of === this.#file ? this.#poster.name : '');
   }
 }
 
@@ -44,7 +60,7 @@ const IMPORTS = `<script type="importmap">
 <script type="module">import 'pointweave/element';</script>
 `;
 
-function snippet(/** @type {string} */ file, /** @type {string} */ title) {
+function snippet(/** @type {string} */ file, /** @type {string} */ title, /** @type {string} */ poster) {
   const text = (/** @type {string} */ words) => words.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model" controls></point-weave>`;
+  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model"${poster && ` poster="${text(encodeURI(poster))}"`} controls></point-weave>`;
 }

@@ -8,6 +8,9 @@ use super::{CALLS, HEAD, Table, camel_case, number};
 const TIE: char = '\u{a0}';
 /// Choices that have a name in TypeScript, too.
 const EXPORTED: [&str; 2] = ["Carry", "Orientation"];
+/// The target that the package makes a count of: wasm never sees it.
+const AUTO: &str = "As many points as suit the scan and the device: a third, at least 2,000, and at most 60,000, on a phone 20,000. \
+    The same scan can thus give two devices different results.";
 /// Columns of a line.
 const WIDTH: usize = 125;
 
@@ -21,8 +24,9 @@ pub fn render(table: &Table) -> String {
         })
         .collect();
     let mut text = format!(
-        "{HEAD}import type {{ ReducedCloud, SurfaceMesh }} from './types.js';\n\n{}export type Target ={targets};\n",
+        "{HEAD}import type {{ ReducedCloud, SurfaceMesh }} from './types.js';\n\n{}export type Target ={targets}\n{}  | 'auto';\n",
         doc(0, &sentences(table, table.item("Target").docs), &[]),
+        doc(2, AUTO, &[]),
     );
     for name in EXPORTED {
         let words: String = choices(table, name)

@@ -10,7 +10,7 @@ use crate::browsers;
 use crate::build::{self, Build, TARGET};
 use crate::packages;
 use crate::page;
-use crate::shell::{Result, cargo, command, root, run, say};
+use crate::shell::{Result, cargo, command, root, run, run_both, say};
 use crate::toolchain::{self, Toolchain};
 use crate::tools;
 use selection::Check;
@@ -171,7 +171,7 @@ fn native_file(file: &str, name: Option<&str>) -> Result<()> {
     run(&mut tests, "tests failed, see above")
 }
 
-/// Every build in every browser, each compiled once.
+/// Every build in every browser, each compiled once: both builds at once, then both browsers at once.
 fn wasm(log: &mut Log) {
     let mut ready = None;
     log.step("wasm: set up", || {
@@ -180,37 +180,44 @@ fn wasm(log: &mut Log) {
         ready = Some((
             toolchain::wasm()?,
             tools::test_runner()?,
-            [
-                ("chromium", "CHROMEDRIVER", browsers::chromedriver()?),
-                ("firefox", "GECKODRIVER", browsers::geckodriver()?),
-            ],
+            browsers::chromedriver()?,
+            browsers::geckodriver()?,
         ));
         Ok(())
     });
-    let Some((toolchain, runner, browsers)) = ready else {
+    let Some((toolchain, runner, chromedriver, geckodriver)) = ready else {
         return;
     };
-    for build in Build::ENGINES {
-        log.step(&format!("wasm: compile {}", build.name()), || {
-            run(
-                wasm_tests(build, &toolchain, &runner).arg("--no-run"),
-                "the tests did not compile, see above",
-            )
+    log.step("wasm: compile", || {
+        let [mut single, mut threads] = Build::ENGINES.map(|build| {
+            let mut tests = wasm_tests(build, &toolchain, &runner);
+            tests.arg("--no-run");
+            tests
         });
-        for (browser, variable, driver) in &browsers {
-            log.step(&format!("wasm: {} in {browser}", build.name()), || {
-                let mut tests = wasm_tests(build, &toolchain, &runner);
-                // The runner takes the first driver that any of these names.
-                for (_, other, _) in &browsers {
-                    tests.env_remove(other);
-                }
-                tests.env(variable, driver);
-                run(
-                    &mut tests,
-                    &format!("wasm tests failed in {browser}, see above"),
-                )
-            });
-        }
+        run_both([
+            (&mut single, "the tests did not compile, see above"),
+            (
+                &mut threads,
+                "those with threads did not compile, see above",
+            ),
+        ])
+    });
+    for build in Build::ENGINES {
+        log.step(&format!("wasm: {}", build.name()), || {
+            // The runner takes the first driver that the environment names.
+            let mut chromium = wasm_tests(build, &toolchain, &runner);
+            chromium
+                .env_remove("GECKODRIVER")
+                .env("CHROMEDRIVER", &chromedriver);
+            let mut firefox = wasm_tests(build, &toolchain, &runner);
+            firefox
+                .env_remove("CHROMEDRIVER")
+                .env("GECKODRIVER", &geckodriver);
+            run_both([
+                (&mut chromium, "wasm tests failed in Chromium, see above"),
+                (&mut firefox, "wasm tests failed in Firefox, see above"),
+            ])
+        });
     }
 }
 

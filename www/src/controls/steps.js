@@ -1,0 +1,32 @@
+import { announce, byId } from '../dom.js';
+import { say } from '../words/say.js';
+
+/** @import { Key } from '../keys.js' */
+/** @import { Shown } from '../state/shown.js' */
+
+/** Undo and redo: of the scan, the settings and what was said of it. */
+export class Steps {
+  #shown;
+  #undo = byId('undo', HTMLButtonElement);
+  #redo = byId('redo', HTMLButtonElement);
+
+  constructor(/** @type {Shown} */ shown) {
+    this.#shown = shown;
+    this.#undo.addEventListener('click', () => shown.undo());
+    this.#redo.addEventListener('click', () => shown.redo());
+    shown.on('changed', () => {
+      this.#undo.disabled = !shown.canUndo;
+      this.#redo.disabled = !shown.canRedo;
+    });
+    shown.on('moved', () => announce(say('Another step is shown')));
+  }
+
+  /** @returns {Key[]} */
+  get keys() {
+    const [undo, redo] = [() => this.#shown.undo(), () => this.#shown.redo()];
+    return [
+      { key: 'z', ctrl: true, shown: 'Ctrl+Z', does: 'Undo', act: undo },
+      { key: 'shift z', ctrl: true, also: [], shown: 'Ctrl+Shift+Z', does: 'Redo', act: redo },
+    ];
+  }
+}
