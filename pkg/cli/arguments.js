@@ -38,7 +38,7 @@ import { UsageError } from './usage.js';
 const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
 
 /** @type {Command[]} */
-export const COMMANDS = ['reduce', 'reconstruct', 'prepare', 'merge', 'inspect'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge'];
 
 /**
  * @param {string[]} argv

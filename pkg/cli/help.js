@@ -11,9 +11,9 @@ import { READ_ROWS } from './read-flags.js';
 const DOES = {
   reduce: 'fewer points that stand for all',
   reconstruct: 'a mesh through the points',
+  inspect: 'count, bounds, spacing, noise',
   prepare: 'the object alone: without floor, strays and other things',
   merge: 'scans of one frame as one',
-  inspect: 'count, bounds, spacing, noise',
 };
 
 const COMMON = [
@@ -42,8 +42,8 @@ export function overview() {
 
   pointweave reduce scan.ply -o light.ply --ratio 0.2
   pointweave reconstruct scan.ply -o mesh.glb
-  pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
   pointweave inspect scan.ply
+  pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
 
 Commands, each with --help
 ${rows(commands)}
