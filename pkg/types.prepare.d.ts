@@ -81,6 +81,7 @@ export interface PlaneReport {
   normal: [number, number, number];
   /** Standard deviation of its points across it. */
   spread: number;
+  /** That its points stand for. */
   area: number;
   /** It is what `drop: 'floor'` drops. */
   floor: boolean;

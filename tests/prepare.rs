@@ -113,6 +113,29 @@ fn a_floor_is_the_plane_that_things_stand_on_and_an_objects_face_is_none() {
         own,
         looked.steps[0].planes.as_ref().unwrap()[number as usize].points
     );
+    // A disc of 1.1 diagonals less what the part hides, and far from its frame's origin the same.
+    let own = &planes[number as usize];
+    let disc = std::f64::consts::PI * (1.1 * scan.diagonal).powi(2);
+    assert!(
+        (0.6..1.2).contains(&(own.area / disc)),
+        "{}",
+        own.area / disc
+    );
+    let away = [500_000.0, 20.0, 4e6];
+    let map: Vec<f64> = scan
+        .positions()
+        .iter()
+        .enumerate()
+        .map(|(k, x)| x + away[k % 3])
+        .collect();
+    let far = prepare(
+        &Cloud::from_f64(&map).unwrap(),
+        &[plane(Drop::Floor)],
+        &mut Silent,
+    )
+    .unwrap();
+    let other = far.steps[0].dropped.abs_diff(floor.steps[0].dropped);
+    assert!(other <= cloud.len() / 1000, "{other}");
     // What is clean already has no floor: the part's faces are its own.
     let clean = sample(Model::Part, 20_000, 4);
     let clean = Cloud::from_f32(&clean.positions).unwrap();

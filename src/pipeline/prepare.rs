@@ -72,7 +72,7 @@ pub struct PlaneReport {
     pub normal: [f64; 3],
     /// Standard deviation of its points across it.
     pub spread: f64,
-    /// Area that it covers.
+    /// Area that its points stand for.
     pub area: f64,
     /// Whether it is what a step `plane` with `drop: 'floor'` drops.
     pub floor: bool,

@@ -70,7 +70,7 @@ pub struct Plane {
     pub points: usize,
     /// Share of the scan's area, 0 to 1.
     pub share: f64,
-    /// Area that its points cover, holes filled, in squares of the diagonal.
+    /// Area that its points stand for, in squares of the diagonal.
     pub area: f64,
     /// Whether it carries what stands on it.
     pub carries: bool,
@@ -129,8 +129,12 @@ impl Planes {
         progress.update(Stage::Prepare, 0.5)?;
         let mut of = assigned(tree, features, &all);
         progress.update(Stage::Prepare, 1.0)?;
-        for plane in of.iter().filter(|&&plane| plane != NONE) {
-            all[*plane as usize].points += 1;
+        for (&plane, &spacing) in of.iter().zip(&features.spacing) {
+            if plane != NONE {
+                let plane = &mut all[plane as usize];
+                plane.points += 1;
+                plane.area += f64::from(spacing) * f64::from(spacing);
+            }
         }
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|&a, &b| all[b].share.total_cmp(&all[a].share));
@@ -238,7 +242,7 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Pla
         sigma: found.sigma,
         points: 0,
         share: found.share,
-        area: sheet.area(),
+        area: 0.0,
         carries: in_front >= IN_FRONT && (open && bears || lies_open),
         in_front,
         free_rim,
