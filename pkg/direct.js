@@ -7,4 +7,5 @@ export { PointweaveError } from './engine/errors.js';
 export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';
 export { sideInWords } from './engine/side.js';
+export { splitOrigin } from './files/origin.js';
 export const load = makeLoad(platform);

@@ -122,6 +122,8 @@ export class PointWeaveElement extends HTMLElement {
   autoRotate: boolean;
   /** Pointer, keyboard and toolbar. Without, it is a picture. */
   controls: boolean;
+  /** The same, as model-viewer calls it. */
+  cameraControls: boolean;
   /** `'lazy'` (default) begins when at most one viewport away, `'eager'` at once. */
   loading: Loading;
   /** Which axis of the file points up. Default `'auto'`: z of what is wide and flat, else y. */

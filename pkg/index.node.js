@@ -7,4 +7,5 @@ export { PointweaveError } from './engine/errors.js';
 export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';
 export { sideInWords } from './engine/side.js';
-export const { createEngine, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);
+export { splitOrigin } from './files/origin.js';
+export const { createEngine, prepare, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);

@@ -1,14 +1,14 @@
 /**
  * The functions of the package without engine, queue and worker: synchronous calls into one single-threaded instance, in the
  * thread that makes them. For whoever has a worker of their own. Files and samples are wasm of their own, which is loaded when they
- * are asked for: `read`, `write` and `sample` wait for it.
+ * are asked for: `prepare`, `read`, `write` and `sample` wait for it.
  */
 import type {
   CallOptions, CloudInfo, EngineOptions, FileCloud, PointCloud, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
-  SampleOptions, SurfaceMesh, WriteOptions, Model,
+  Prepared, SampleOptions, Step, SurfaceMesh, WriteOptions, Model,
 } from './types.js';
 
-export { DEFAULTS, PointweaveError, autoCount, flip, sideInWords } from './types.js';
+export { DEFAULTS, PointweaveError, autoCount, flip, sideInWords, splitOrigin } from './types.js';
 
 export type CoreOptions = Pick<EngineOptions, 'wasmUrl'>;
 
@@ -17,6 +17,8 @@ export type CoreOptions = Pick<EngineOptions, 'wasmUrl'>;
  * After an error of code `internal` or `out-of-memory` it is broken, and {@link load} makes another.
  */
 export interface Core {
+  /** A reduction of a cloud that `prepare` gave has no option `prepare`. */
+  prepare<P extends Float32Array | Float64Array>(cloud: PointCloud<P> | PointCloud<P>[], steps: Step[], options?: CallOptions): Promise<Prepared<P>>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): ReducedCloud<P>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): SurfaceMesh<P>;
   inspect(cloud: PointCloud, options?: CallOptions): CloudInfo;

@@ -7,6 +7,7 @@
  */
 
 import type { ReconstructOptions, ReduceOptions } from './types.options.js';
+import type { PrepareOption, Prepared, Step, StepReport } from './types.prepare.js';
 import type { ReduceReport, SurfaceReport } from './types.reports.js';
 
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
@@ -63,7 +64,7 @@ export interface Viewpoints {
 }
 
 /** The steps of a call, in the order in which they run. */
-export type Stage = 'read' | 'octree' | 'features' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
+export type Stage = 'read' | 'octree' | 'features' | 'prepare' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
 
 export interface Progress {
   stage: Stage;
@@ -88,6 +89,7 @@ export interface CallOptions {
 
 export * from './types.options.js';
 export * from './types.reports.js';
+export * from './types.prepare.js';
 
 export interface ReducedCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array>
   extends PointCloud<Positions> {
@@ -106,6 +108,8 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   assignment?: Uint32Array;
   /** With `cells`, six numbers a sub-domain: the lowest x y z of its input points, and the highest. */
   cells?: Positions;
+  /** With `prepare`: what the recipe did. `nearest` and `assignment` are of the points that were given. */
+  prepared?: { labels: Uint8Array; steps: StepReport[] };
   report: ReduceReport;
 }
 
@@ -132,6 +136,8 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
     /** One entry a vertex: the mean over the points nearest to its triangles; NaN where the mesh spans a place without points. */
     vertices: Float32Array;
   };
+  /** With `prepare`: what the recipe did. */
+  prepared?: { labels: Uint8Array; steps: StepReport[] };
   report: SurfaceReport;
 }
 
@@ -312,10 +318,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/` and `samples/`, or
-   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, or a sample made. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/`, `prepare/` and `samples/`, or
+   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, a recipe done, or a sample made. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; samples?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; prepare?: string | URL; samples?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.
@@ -335,8 +341,13 @@ export interface Engine {
   readonly threads: number;
   /** Why this build. */
   readonly reason: string;
-  reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): Promise<ReducedCloud<P>>;
-  reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): Promise<SurfaceMesh<P>>;
+  /**
+   * Cuts the object out of a scan, step by step: floors, pieces, strays, regions. Several clouds of one frame become one first,
+   * and labels are of their points one cloud after the other.
+   */
+  prepare<P extends Float32Array | Float64Array>(cloud: PointCloud<P> | PointCloud<P>[], steps: Step[], options?: CallOptions): Promise<Prepared<P>>;
+  reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & PrepareOption & CallOptions): Promise<ReducedCloud<P>>;
+  reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
   inspect(cloud: PointCloud, options?: CallOptions): Promise<CloudInfo>;
   /**
@@ -351,6 +362,7 @@ export interface Engine {
   dispose(): Promise<void>;
 }
 
+export const prepare: Engine['prepare'];
 export const reduce: Engine['reduce'];
 export const reconstruct: Engine['reconstruct'];
 export const inspect: Engine['inspect'];
@@ -369,6 +381,12 @@ export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: numb
 
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
 export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
+
+/**
+ * Splits an origin of whole numbers off a cloud in double precision whose coordinates are far from zero for its size, as those of maps
+ * are: positions become differences from it, in place, and it goes into all that is made of the cloud. No bit is lost. Others stay as they are.
+ */
+export function splitOrigin<T extends { positions: Float32Array | Float64Array; origin?: [number, number, number] }>(cloud: T): T;
 
 /** How many points `target: 'auto'` keeps of so many, on this device. */
 export function autoCount(points: number): number;

@@ -7,6 +7,7 @@
 //! caller's arrays
 //!   └ cloud       checked, unit frame, Morton order                 section 3, sub-domains
 //!     └ features    spacing, normal, curvature, variation, noise      (given, in the paper)
+//!       ├ prepare     floors, pieces, strays, regions                   (before all else, where asked for)
 //!       └ reduce      fuzzy c-means centres stand for the points      section 3, eq. 1-8        ──► reduced cloud
 //!         └ fit         a local implicit function a sub-domain        section 4.1, eq. 9-11
 //!           └ orient      which side is out                           section 4.2, Algorithm 1
@@ -30,14 +31,22 @@
 #![deny(missing_docs)]
 // Who changes a stage reads its docs with `--document-private-items`; for who calls it such names are text.
 #![allow(rustdoc::private_intra_doc_links)]
-// Of the base, what only stages call.
-#![cfg_attr(not(feature = "stages"), allow(dead_code))]
+// Of the base, what only stages call; of the border, what only the engine does.
+#![cfg_attr(
+    any(
+        not(feature = "stages"),
+        all(feature = "prepare", not(feature = "engine"))
+    ),
+    allow(dead_code)
+)]
 
 // The wings, in the order in which data flows through them. Each imports only those above it.
 pub mod base;
 pub mod cloud;
 #[cfg(feature = "stages")]
 pub mod features;
+#[cfg(feature = "stages")]
+pub mod prepare;
 #[cfg(feature = "stages")]
 pub mod reduce;
 #[cfg(feature = "stages")]

@@ -7,6 +7,7 @@ import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { READ_FLAGS, readSaid } from './read-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';
+import { PREPARE_FLAGS, isEmpty, preparation } from './prepare-flags.js';
 import { UsageError } from './usage.js';
 
 /** @import { Command } from './flags.js' */
@@ -14,6 +15,7 @@ import { UsageError } from './usage.js';
 /**
  * @typedef {object} Job
  * @property {string} input `-` is standard input
+ * @property {string[]} [inputs] of files that become one
  * @property {string} [output] `-` is standard output
  */
 
@@ -25,6 +27,7 @@ import { UsageError } from './usage.js';
  * @property {boolean} json
  * @property {'auto' | number} threads
  * @property {import('./cloud-flags.js').Said} cloud what is said of each scan beside its file
+ * @property {import('./prepare-flags.js').Preparation} prepare what is done to each before
  * @property {Record<string, any>} read how each is read
  * @property {Record<string, any>} own options of the function that has the command's name
  * @property {Record<string, any>} write options of `write`, without the format
@@ -35,7 +38,7 @@ import { UsageError } from './usage.js';
 const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
 
 /** @type {Command[]} */
-const COMMANDS = ['reduce', 'reconstruct', 'inspect'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge'];
 
 /**
  * @param {string[]} argv
@@ -46,7 +49,7 @@ export function parse(argv) {
   if (first === '--version' || first === '-v') return { version: true };
   if (first === '--help' || first === '-h') return {};
   if (first === 'help') return { help: COMMANDS.find((name) => name === rest[0]) };
-  if (first === undefined) throw new UsageError('a command is needed: reduce, reconstruct or inspect');
+  if (first === undefined) throw new UsageError(`a command is needed: ${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`);
   const command = COMMANDS.find((name) => name === first);
   if (!command) throw new UsageError(noCommand(first));
   const { values, positionals: inputs } = parseFlags(command, rest);
@@ -68,7 +71,7 @@ function optionsOf(command) {
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
-    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS }),
+    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...PREPARE_FLAGS }),
     ...parserOptions(flagsOf(command)),
   };
 }
@@ -117,13 +120,15 @@ function task(command, values, inputs) {
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
   const { own, read, write } = optionsFrom(command, values);
-  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write };
+  const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write, prepare: preparation(values) };
+  if (command === 'prepare' && isEmpty(shared.prepare)) throw new UsageError('what should be cut? --prepare RECIPE, --crop, --drop-strays, --drop-planes, --drop-floor or --keep-largest');
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
   checkKind(write, format);
+  if (command === 'merge') return { ...shared, jobs: [oneOf(inputs, out, shared.json)], format };
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
   if (shared.json) return { ...shared, jobs: inputs.map((input) => ({ input })) };
@@ -142,6 +147,14 @@ function checkKind(write, format) {
   for (const [name, only] of Object.entries(ONLY)) {
     if (write[name] && format !== only) throw new UsageError(`--${name} is for ${only.toUpperCase()} files`);
   }
+}
+
+/** @param {string[]} inputs @param {string | undefined} output @param {boolean} json @returns {Job} */
+function oneOf(inputs, output, json) {
+  if (inputs.includes('-')) throw new UsageError('merge reads files, not standard input');
+  if (output === undefined && !json) throw new UsageError('where should the result go? -o FILE, or --json for the report alone');
+  if (output === '-' && json) throw new UsageError('--json and --out - both want standard output');
+  return { input: inputs.join(' + '), inputs, output };
 }
 
 /** @param {string[]} inputs @param {string} output @param {boolean} json @returns {Job} */

@@ -7,7 +7,7 @@ import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
 /** @import { Rule, Table } from '../engine/rules.js' */
-/** @typedef {'reduce' | 'reconstruct' | 'inspect'} Command */
+/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'merge' | 'inspect'} Command */
 
 /**
  * @typedef {object} Flag
@@ -43,6 +43,7 @@ const AMOUNTS = {
 export function flagsOf(command) {
   const read = flags('read', TABLES.read);
   if (command === 'inspect') return read;
+  if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
   const reduce = [...flags('target', AMOUNTS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */

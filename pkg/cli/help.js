@@ -2,6 +2,7 @@
 import { CLOUD_ROWS } from './cloud-flags.js';
 import { FORMATS } from './formats.js';
 import { flagsOf } from './flags.js';
+import { PREPARE_ROWS } from './prepare-flags.js';
 import { READ_ROWS } from './read-flags.js';
 
 /** @import { Command, Flag } from './flags.js' */
@@ -11,6 +12,8 @@ const DOES = {
   reduce: 'fewer points that stand for all',
   reconstruct: 'a mesh through the points',
   inspect: 'count, bounds, spacing, noise',
+  prepare: 'the object alone: without floor, strays and other things',
+  merge: 'scans of one frame as one',
 };
 
 const COMMON = [
@@ -40,6 +43,7 @@ export function overview() {
   pointweave reduce scan.ply -o light.ply --ratio 0.2
   pointweave reconstruct scan.ply -o mesh.glb
   pointweave inspect scan.ply
+  pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
 
 Commands, each with --help
 ${rows(commands)}
@@ -50,16 +54,16 @@ ${rows(commands)}
 /** @param {Command} command */
 export function help(command) {
   const flags = flagsOf(command);
-  const output = command === 'inspect' ? '' : ` -o result.${command === 'reduce' ? 'ply' : 'glb'} [options]`;
+  const output = command === 'inspect' ? '' : ` -o result.${command === 'reconstruct' ? 'glb' : 'ply'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
   const works = command !== 'inspect';
-  const listed = [...sections, ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
+  const listed = [...sections, ['Before', works ? PREPARE_ROWS : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
+  const several = `  pointweave ${command} a.ply b.ply${command === 'inspect' ? '' : ' --out-dir results'}\n  - reads standard input`;
+  const usage = command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} scan.ply${output}\n${several}`;
   return `pointweave ${command}: ${DOES[command]}
 
-  pointweave ${command} scan.ply${output}
-  pointweave ${command} a.ply b.ply${command === 'inspect' ? '' : ' --out-dir results'}
-  - reads standard input
+${usage}
 
 ${filled.map(([title, lines]) => `${title}\n${rows(/** @type {string[][]} */ (lines))}`).join('\n')}`;
 }

@@ -1,7 +1,7 @@
 /** From the command line to the exit code: 0 done, 1 failed, 2 usage, 128 + the signal's number when interrupted. */
 import { readFile } from 'node:fs/promises';
 import { constants } from 'node:os';
-import { parse } from './arguments.js';
+import { COMMANDS, parse } from './arguments.js';
 import { sentence } from './files.js';
 import { help, overview } from './help.js';
 import { run, say } from './run.js';
@@ -42,7 +42,7 @@ function fail(error, [command], interrupted) {
     say(sentence(error));
     return 1;
   }
-  say(`${error.message}\nSee pointweave ${['reduce', 'reconstruct', 'inspect'].includes(command) ? `${command} ` : ''}--help`);
+  say(`${error.message}\nSee pointweave ${COMMANDS.some((name) => name === command) ? `${command} ` : ''}--help`);
   return 2;
 }
 

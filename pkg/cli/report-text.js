@@ -2,7 +2,7 @@
 import { sideInWords } from '../engine/side.js';
 import { skippedInWords } from '../files/skipped.js';
 
-/** @import { CloudInfo, FileCloud, ReduceReport, SurfaceReport } from '../types.js' */
+/** @import { CloudInfo, FileCloud, ReduceReport, StepReport, SurfaceReport } from '../types.js' */
 
 /** @param {number} count */
 const whole = (count) => count.toLocaleString('en-US');
@@ -24,6 +24,21 @@ export function reportLine(report, { skipped }) {
   const out = skippedInWords(skipped);
   const left = out ? `; left out: ${out}` : '';
   return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${side}${left}`;
+}
+
+/**
+ * @param {number} count of points before
+ * @param {StepReport[]} steps
+ */
+export function stepsLine(count, steps) {
+  const left = steps.at(-1)?.kept ?? count;
+  const did = steps.map(({ step, dropped }) => `${step} −${whole(dropped)}`);
+  return `${whole(count)} → ${[pointsOf(left), ...did].join(', ')}`;
+}
+
+/** Steps that did less than may be expected. @param {StepReport[]} steps */
+export function reasonLines(steps) {
+  return steps.filter(({ reason }) => reason).map(({ step, reason }) => `${step}: ${reason}`);
 }
 
 /** @param {ReduceReport | SurfaceReport} report */

@@ -5,13 +5,15 @@ import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
-import { doubtLines, infoLines, pointsOf, reportLine } from './report-text.js';
+import { stepsOf } from './prepare-flags.js';
+import { doubtLines, infoLines, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
 import { UsageError } from './usage.js';
 
 /** @import { Engine } from '../types.js' */
 /** @import { Job, Task } from './arguments.js' */
 
 /** @typedef {{ report: object, text: string, doubts: string[] }} Result */
+/** @typedef {Task & { steps: import('../types.js').Step[] }} Whole a task with the steps of its recipe */
 /** @typedef {Job & (Result | { error: unknown })} Outcome */
 
 /**
@@ -21,6 +23,7 @@ import { UsageError } from './usage.js';
  */
 export async function run(task, signal) {
   await checkOutputs(task.jobs);
+  const steps = await stepsOf(task.prepare);
   await compressorFor(task.write.meshopt); // that its packages are missing is known before the work
   if (task.folder) await makeFolder(task.folder);
   // A worker in any case: this thread has to hear Ctrl-C.
@@ -29,7 +32,7 @@ export async function run(task, signal) {
   const outcomes = [];
   try {
     for (const job of task.jobs) {
-      const outcome = await attempt(engine, task, job, outcomes.length, signal);
+      const outcome = await attempt(engine, { ...task, steps }, job, outcomes.length, signal);
       signal.throwIfAborted();
       outcomes.push(outcome);
       tell(task, outcome);
@@ -50,7 +53,7 @@ export async function run(task, signal) {
 async function checkOutputs(jobs) {
   for (const { output } of jobs) {
     if (output === undefined || output === '-') continue;
-    for (const { input } of jobs) {
+    for (const input of jobs.flatMap(({ input, inputs = [input] }) => inputs)) {
       if (await sameFile(input, output)) throw new UsageError(`'${output}' is the scan itself: a result does not overwrite it`);
     }
   }
@@ -58,7 +61,7 @@ async function checkOutputs(jobs) {
 
 /**
  * @param {Engine} engine
- * @param {Task} task
+ * @param {Whole} task
  * @param {Job} job
  * @param {number} done
  * @param {AbortSignal} signal
@@ -77,32 +80,70 @@ async function attempt(engine, task, job, done, signal) {
 
 /**
  * @param {Engine} engine
- * @param {Task} task
+ * @param {Whole} task
  * @param {Job} job
  * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
  * @returns {Promise<Result>}
  */
-async function perform(engine, { command, cloud: said, own, read, write, format }, { input, output }, watch) {
-  const { signal } = watch;
+async function perform(engine, task, job, watch) {
+  const { command, cloud: said, own, steps } = task;
+  const { input, inputs = [input], output } = job;
   if (output !== undefined && output !== '-') await checkPlace(output);
-  const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await openInput(input, signal), { name, beside: besideOf(input), ...read, ...watch, transfer: true });
-  const { file } = cloud;
-  if (cloud.positions.length === 0 && file.dropped > 0) {
-    throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(file.dropped)}, none of them finite` });
-  }
+  const clouds = [];
+  for (const name of inputs) clouds.push(await scanOf(engine, task, name, watch));
+  const [cloud] = clouds;
   if (command === 'inspect') {
     const info = await engine.inspect(cloud, watch);
-    return { report: { ...info, skipped: cloud.skipped, columns: cloud.columns, file }, text: infoLines(info, cloud), doubts: [] };
+    return { report: { ...info, skipped: cloud.skipped, columns: cloud.columns, file: cloud.file }, text: infoLines(info, cloud), doubts: [] };
   }
-  const result = await engine[command](withSaid(cloud, said), { ...own, ...watch, transfer: true });
-  const { report } = result;
-  if (output !== undefined) {
-    const bytes = await engine.write(result, { ...write, format: /** @type {any} */ (format), signal, transfer: true });
-    if (output === '-') await print(bytes);
-    else await writeOutput(output, bytes, signal);
+  if (command === 'prepare' || command === 'merge') {
+    const count = clouds.reduce((sum, { positions }) => sum + positions.length / 3, 0);
+    const prepared = await engine.prepare(clouds.map((each) => withSaid(each, said)), steps, watch);
+    await save(engine, task, output, prepared.cloud, watch);
+    const report = { inputPoints: count, outputPoints: prepared.kept.length, steps: told(prepared.steps) };
+    return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps) };
   }
-  return { report, text: reportLine(report, cloud), doubts: doubtLines(report) };
+  const prepare = steps.length > 0 ? { prepare: steps } : {};
+  const result = await engine[command](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
+  await save(engine, task, output, result, watch);
+  const { report, prepared } = result;
+  const before = prepared ? `${stepsLine(prepared.labels.length, prepared.steps)}; ` : '';
+  const reasons = prepared ? reasonLines(prepared.steps) : [];
+  return { report: prepared ? { ...report, steps: told(prepared.steps) } : report, text: before + reportLine(report, cloud), doubts: [...reasons, ...doubtLines(report)] };
+}
+
+/**
+ * @param {Engine} engine
+ * @param {Task} task
+ * @param {string} input
+ * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
+ */
+async function scanOf(engine, { read }, input, watch) {
+  const name = input === '-' ? undefined : input;
+  const cloud = await engine.read(await openInput(input, watch.signal), { name, beside: besideOf(input), ...read, ...watch, transfer: true });
+  if (cloud.positions.length === 0 && cloud.file.dropped > 0) {
+    throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(cloud.file.dropped)}, none of them finite` });
+  }
+  return cloud;
+}
+
+/**
+ * @param {Engine} engine
+ * @param {Task} task
+ * @param {string | undefined} output
+ * @param {any} result
+ * @param {{ signal: AbortSignal }} watch
+ */
+async function save(engine, { write, format }, output, result, { signal }) {
+  if (output === undefined) return;
+  const bytes = await engine.write(result, { ...write, format: /** @type {any} */ (format), signal, transfer: true });
+  if (output === '-') await print(bytes);
+  else await writeOutput(output, bytes, signal);
+}
+
+/** Reports without a label for every point. @param {import('../types.js').StepReport[]} steps */
+function told(steps) {
+  return steps.map(({ labels, ...step }) => step);
 }
 
 /** @param {Task} task @param {Outcome} outcome */

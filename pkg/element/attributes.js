@@ -15,7 +15,7 @@ const MOST_POINTS = 0xffffffff;
 const MOST_THREADS = 64;
 
 export class Reflecting extends Switching {
-  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'loading', 'up', 'orientation', 'flip', ...SWITCHED];
+  static observedAttributes = ['src', 'alt', 'ratio', 'count', 'view', 'poster', 'threads', 'auto-rotate', 'controls', 'camera-controls', 'loading', 'up', 'orientation', 'flip', ...SWITCHED];
 
   /** For use at the end of a constructor: what a page has set before the element was defined goes where it belongs. */
   upgrade() {
@@ -131,11 +131,21 @@ export class Reflecting extends Switching {
     this.toggleAttribute('auto-rotate', Boolean(value));
   }
 
+  /** `camera-controls`, as model-viewer calls it, is the same. */
   get controls() {
-    return this.hasAttribute('controls');
+    return this.hasAttribute('controls') || this.hasAttribute('camera-controls');
   }
 
   set controls(value) {
     this.toggleAttribute('controls', Boolean(value));
+    if (!value) this.removeAttribute('camera-controls');
+  }
+
+  get cameraControls() {
+    return this.controls;
+  }
+
+  set cameraControls(value) {
+    this.controls = value;
   }
 }

@@ -101,7 +101,7 @@ export class PointWeaveElement extends Posed {
   attributeChangedCallback(name, before, now) {
     if (before === now) return;
     if (CAMERA.includes(name)) this.pose(name);
-    if (LIGHT.includes(name)) this.light().catch((error) => this.#fail(this.src, error));
+    if (LIGHT.includes(name)) this.light();
     switch (name) {
       case 'src':
         this.#forget();
@@ -124,6 +124,7 @@ export class PointWeaveElement extends Posed {
         this.#describe();
         break;
       case 'controls':
+      case 'camera-controls':
         this.#describe();
         this.#dress();
         break;

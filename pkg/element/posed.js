@@ -76,7 +76,7 @@ export class Posed extends Reflecting {
     if (attribute === undefined || /^(camera|field)/.test(attribute)) aim(viewer, this);
   }
 
-  /** Brings the light in line with the attributes. Rejects where its picture does not load; the studio's light stays then. */
+  /** Brings the light in line with the attributes. Where its picture does not load, an `error` says so and the studio stays. */
   async light() {
     const viewer = this[VIEWER];
     if (!viewer) return;
@@ -87,9 +87,13 @@ export class Posed extends Reflecting {
     this.#surroundings = address;
     viewer.surroundings = 'neutral';
     if (!address) return;
-    const { surroundingsAt } = await import('./surroundings.js');
-    const surroundings = await surroundingsAt(address);
-    if (address === this.#surroundings) viewer.surroundings = surroundings;
+    try {
+      const { surroundingsAt } = await import('./surroundings.js');
+      const surroundings = await surroundingsAt(address);
+      if (address === this.#surroundings) viewer.surroundings = surroundings;
+    } catch (error) {
+      this.dispatchEvent(new CustomEvent('error', { detail: { src: this.src, error } }));
+    }
   }
 
   get #canvas() {

@@ -21,6 +21,7 @@ export const WORDS = {
     read: 'Reading the scan',
     octree: 'Sorting the points',
     features: 'Measuring curvature and noise',
+    prepare: 'Cutting the object out',
     cluster: 'Choosing the points to keep',
     place: 'Placing them on the surface',
     cells: 'Dividing the surface into patches',

@@ -1,7 +1,9 @@
 /** The caller's clouds on their way in: of the right kind, and no longer the caller's memory. */
 import { own } from './arrays.js';
 import { UNITS } from './axes.js';
+import { PointweaveError } from './errors.js';
 import { badInput, expectArray } from './inputs.js';
+import { joinedCloud } from '../files/joining.js';
 
 /** @import { PointCloud } from '../types.js' */
 
@@ -13,6 +15,38 @@ import { badInput, expectArray } from './inputs.js';
  */
 export function cloudArgument(cloud, transfer) {
   return own(cloudFields(fields(cloud, 'cloud')), transfer);
+}
+
+/**
+ * One cloud, or several of one frame as one.
+ * @param {unknown} clouds
+ * @param {boolean} [transfer]
+ * @returns {PointCloud}
+ */
+export function cloudsArgument(clouds, transfer) {
+  if (!Array.isArray(clouds)) return cloudArgument(clouds, transfer);
+  if (clouds.length === 0) throw badInput('cloud', 'a cloud, or an array with one at least', clouds);
+  if (clouds.length === 1) return cloudArgument(clouds[0], transfer);
+  const each = clouds.map((cloud) => cloudFields(fields(cloud, 'cloud')));
+  each.forEach(checkLengths);
+  return joinedCloud(each);
+}
+
+/** What wasm checks of one cloud has to hold before several are put together. @param {PointCloud} cloud */
+function checkLengths({ positions, colors, normals, attributes, viewpoints }) {
+  if (positions.length % 3) throw badLength('positions', 'a multiple of 3', positions.length);
+  const points = positions.length / 3;
+  /** @type {[string, ArrayLike<number> | undefined, number][]} */
+  const arrays = [['colors', colors, 3], ['normals', normals, 3], ['viewpoints.of', viewpoints?.of, 1]];
+  for (const [name, values] of Object.entries(attributes ?? {})) arrays.push([`attributes.${name}`, values, 1]);
+  for (const [name, values, each] of arrays) {
+    if (values && values.length !== each * points) throw badLength(name, `${each * points} (${each} a point)`, values.length);
+  }
+}
+
+/** @param {string} array @param {string} expected @param {number} found */
+function badLength(array, expected, found) {
+  return new PointweaveError({ code: 'bad-length', message: `${array} has ${found} values: expected ${expected}`, expected, found });
 }
 
 /**

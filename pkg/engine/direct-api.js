@@ -1,15 +1,17 @@
 /**
  * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
- * `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
+ * `prepare`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
  */
 import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
-import { cloudArgument, resultArgument } from './clouds.js';
+import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
+import { checkRecipe, lookedAt, preparedOf } from './preparing.js';
+import { badOption } from './rules.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -53,7 +55,8 @@ export function makeLoad(platform) {
       call,
       (/** @type {any} */ subject, /** @type {any} */ options) => f({ platform, wasmUrl }, subject, options),
     ]);
-    return Object.fromEntries([...calls, ...waiting]);
+    const prepareHere = (/** @type {any} */ cloud, /** @type {any} */ steps, /** @type {any} */ options) => prepare({ platform, wasmUrl }, cloud, steps, options);
+    return Object.fromEntries([...calls, ...waiting, ['prepare', prepareHere]]);
   };
 }
 
@@ -73,8 +76,9 @@ async function start(platform, wasmUrl) {
  * @param {unknown} options
  */
 function run(core, call, subject, options) {
-  const { own, transfer, signal, onProgress } = checkOptions(call, options);
+  const { own: { prepare, ...own }, transfer, signal, onProgress } = checkOptions(call, options);
   signal?.throwIfAborted();
+  if (prepare) throw badOption('prepare', "undefined: call prepare before, as it waits for its wasm", prepare);
   if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
   return signed(runHere(core, { call, args: ARGUMENTS[call](subject, own, transfer) }, { signal, onProgress }), CHOICE);
 }
@@ -92,6 +96,15 @@ async function withModule({ platform: { compile, loadBindings }, wasmUrl }, buil
   const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
   const host = await inProcessHost(bindings, { build, module });
   return keepAlive(job((request) => host.run(request, watch)));
+}
+
+/** @param {Place} place @param {any} cloud @param {any} steps @param {unknown} options */
+async function prepare(place, cloud, steps, options) {
+  const { transfer, ...watch } = checkOptions('prepare', options);
+  watch.signal?.throwIfAborted();
+  const given = cloudsArgument(cloud, transfer);
+  const args = [lookedAt(given), checkRecipe(steps)];
+  return withModule(place, 'prepare', watch, async (ask) => preparedOf(given, await ask({ call: 'prepare', args })));
 }
 
 /** @param {Place} place @param {any} data @param {unknown} options */

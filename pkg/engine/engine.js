@@ -5,19 +5,20 @@
 import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
-import { cloudArgument, resultArgument } from './clouds.js';
+import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
+import { checkRecipe, halves, lookedAt, ofAllPoints, preparedOf } from './preparing.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
 import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 /** @import { Build, CallOptions, CloudInfo, EngineOptions, FileCloud, Model, PointCloud, ReadOptions, ReconstructOptions } from '../types.js' */
-/** @import { ReduceOptions, ReducedCloud, SampleOptions, SurfaceMesh, WriteOptions } from '../types.js' */
+/** @import { PrepareOption, ReduceOptions, ReducedCloud, SampleOptions, SurfaceMesh, WriteOptions } from '../types.js' */
 /** @import { Host, Watch, WorkerLike } from './worker-host.js' */
 /** @import { Bindings, Request, WasmBuild } from './core.js' */
 
@@ -97,25 +98,33 @@ export class Engine {
   /**
    * @template {Float32Array | Float64Array} P
    * @param {PointCloud<P>} cloud
-   * @param {ReduceOptions & CallOptions} [options]
+   * @param {ReduceOptions & PrepareOption & CallOptions} [options]
    * @returns {Promise<ReducedCloud<P>>}
    */
   async reduce(cloud, options) {
-    const { own, transfer, ...watch } = this.#check('reduce', options);
-    const argument = cloudArgument(cloud, transfer);
-    return this.#run({ call: 'reduce', args: [argument, counted(own, argument)] }, watch);
+    return this.#compute('reduce', cloud, options);
   }
 
   /**
    * @template {Float32Array | Float64Array} P
    * @param {PointCloud<P>} cloud
-   * @param {ReconstructOptions & CallOptions} [options]
+   * @param {ReconstructOptions & PrepareOption & CallOptions} [options]
    * @returns {Promise<SurfaceMesh<P>>}
    */
   async reconstruct(cloud, options) {
-    const { own, transfer, ...watch } = this.#check('reconstruct', options);
-    const argument = cloudArgument(cloud, transfer);
-    return this.#run({ call: 'reconstruct', args: [argument, counted(own, argument)] }, watch);
+    return this.#compute('reconstruct', cloud, options);
+  }
+
+  /**
+   * @template {Float32Array | Float64Array} P
+   * @param {PointCloud<P> | PointCloud<P>[]} cloud
+   * @param {import('../types.js').Step[]} steps
+   * @param {CallOptions} [options]
+   * @returns {Promise<import('../types.js').Prepared<P>>}
+   */
+  async prepare(cloud, steps, options) {
+    const { transfer, ...watch } = this.#check('prepare', options);
+    return this.#prepared(cloudsArgument(cloud, transfer), checkRecipe(steps), watch);
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
@@ -213,6 +222,31 @@ export class Engine {
     const checked = checkOptions(call, options);
     checked.signal?.throwIfAborted();
     return checked;
+  }
+
+  /**
+   * A reduction or a reconstruction, after a recipe where there is one.
+   * @param {'reduce' | 'reconstruct'} call
+   * @param {any} cloud
+   * @param {unknown} options
+   * @returns {Promise<any>}
+   */
+  async #compute(call, cloud, options) {
+    const { own: { prepare, ...own }, transfer, ...watch } = this.#check(call, options);
+    const given = cloudArgument(cloud, transfer);
+    if (!prepare) return this.#run({ call, args: [given, counted(own, given)] }, watch);
+    const [first, second] = halves(watch);
+    const prepared = await this.#prepared(given, prepare, first);
+    return ofAllPoints(await this.#run({ call, args: [prepared.cloud, counted(own, prepared.cloud)] }, second), prepared);
+  }
+
+  /**
+   * @param {import('../types.js').PointCloud} cloud of this engine
+   * @param {import('../types.js').Step[]} steps
+   * @param {Watch} watch
+   */
+  async #prepared(cloud, steps, watch) {
+    return preparedOf(cloud, await this.#runIn('prepare', { call: 'prepare', args: [lookedAt(cloud), steps] }, watch));
   }
 
   /**

@@ -4,6 +4,7 @@
  */
 import { AXES, UNITS, isDirection } from './axes.js';
 import * as TABLE from './options-table.js';
+import { RECIPE } from './preparing.js';
 import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
 
 /** @import { ReconstructOptions, ReduceOptions } from '../types.js' */
@@ -47,7 +48,7 @@ const SAMPLE = {
 };
 
 /** Folders of `pkg/wasm`. */
-const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'samples'];
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'samples'];
 
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
@@ -66,8 +67,11 @@ const CALL = {
   transfer: toggle(false),
 };
 
+/** Of a reduction and a reconstruction: what is done to the scan before. */
+const FIRST = { prepare: RECIPE };
+
 /** The command line has its flags from here. */
-export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.
@@ -82,7 +86,8 @@ export const DEFAULTS = deepFreeze({ reduce: defaultsOf(REDUCE), reconstruct: de
  * @returns {{ own: Record<string, any>, signal?: AbortSignal, onProgress?: (progress: any) => void, transfer?: boolean }}
  */
 export function checkOptions(call, options = {}) {
-  const { signal, onProgress, transfer, ...own } = checkTable({ ...TABLES[call], ...CALL }, options, '');
+  const table = call === 'reduce' || call === 'reconstruct' ? { ...TABLES[call], ...FIRST, ...CALL } : { ...TABLES[call], ...CALL };
+  const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }

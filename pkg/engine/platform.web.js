@@ -44,6 +44,7 @@ function wasmFile(build, given) {
     packed: () => new URL('../wasm/packed/pointweave_bg.wasm', import.meta.url),
     pictures: () => new URL('../wasm/pictures/pointweave_bg.wasm', import.meta.url),
     exports: () => new URL('../wasm/exports/pointweave_bg.wasm', import.meta.url),
+    prepare: () => new URL('../wasm/prepare/pointweave_bg.wasm', import.meta.url),
     samples: () => new URL('../wasm/samples/pointweave_bg.wasm', import.meta.url),
   }[build]();
   if (!given) return file.href;

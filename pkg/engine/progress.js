@@ -4,6 +4,7 @@
 
 /** @type {Record<string, [Stage, number][]>} */
 const SHARES = {
+  prepare: [['octree', 3], ['features', 57], ['prepare', 40]],
   reduce: [['octree', 3], ['features', 38], ['cluster', 44], ['place', 3], ['report', 12]],
   reconstruct: [
     ['octree', 1], ['features', 22], ['cluster', 25], ['place', 3],

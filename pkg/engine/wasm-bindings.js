@@ -10,6 +10,7 @@ const MODULES = {
   packed: () => import('../wasm/packed/pointweave.js'),
   pictures: () => import('../wasm/pictures/pointweave.js'),
   exports: () => import('../wasm/exports/pointweave.js'),
+  prepare: () => import('../wasm/prepare/pointweave.js'),
   samples: () => import('../wasm/samples/pointweave.js'),
 };
 

@@ -17,6 +17,7 @@ import { Lights } from './light.js';
  * @property {import('three').Scene} scene
  * @property {import('three').PerspectiveCamera} camera
  * @property {CanvasRenderingContext2D} context where it goes
+ * @property {boolean} lit whether anything in it has a material that is lit
  * @property {object | 'neutral'} surroundings what lights it: a texture, or the studio
  * @property {number} exposure of materials that are lit; 1 as it is
  * @property {(renderer: WebGLRenderer) => void} readied what has to be drawn elsewhere before: its shadow
@@ -102,7 +103,7 @@ class Painter {
     const { width, height, scene, camera, context } = picture;
     if (!width || !height || this.#renderer.getContext().isContextLost()) return;
     this.#grow(width, height);
-    scene.environment = this.#lights.of(/** @type {import('three').Texture | 'neutral'} */ (picture.surroundings));
+    if (picture.lit) scene.environment = this.#lights.of(/** @type {import('three').Texture | 'neutral'} */ (picture.surroundings));
     this.#renderer.toneMappingExposure = picture.exposure;
     picture.readied(this.#renderer);
     this.#renderer.setViewport(0, 0, width, height);

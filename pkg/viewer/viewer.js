@@ -43,6 +43,7 @@ class CanvasViewer extends Moved {
   context;
   /** @type {import('./painter.js').Side[]} */
   sides = [];
+  lit = false;
   #canvas;
   #painter = sharedPainter();
   #stage;
@@ -100,6 +101,7 @@ class CanvasViewer extends Moved {
     const model = isModel(what);
     if (!model) expectDrawable(what);
     this.clear();
+    this.lit = model;
     if (model) {
       const { scene, layers, outline, frame: own } = /** @type {Model & Parts} */ (what);
       this.box = own;
@@ -338,6 +340,7 @@ class CanvasViewer extends Moved {
     inSight().delete(this.#canvas);
     this.#stage.free();
     this.#ground.free();
+    if (this.#surroundings !== NEUTRAL) this.#painter.drop(this.#surroundings);
   }
 
   resume() {

@@ -13,6 +13,8 @@ pub enum Stage {
     Octree,
     /// Spacing, normals, curvature, noise; isolated points.
     Features,
+    /// Pieces, planes and strays of a scan.
+    Prepare,
     /// Fuzzy c-means in the sub-domains (section 3).
     Cluster,
     /// Centres put in place; attributes carried over.
@@ -35,6 +37,7 @@ impl Stage {
         match self {
             Stage::Octree => "octree",
             Stage::Features => "features",
+            Stage::Prepare => "prepare",
             Stage::Cluster => "cluster",
             Stage::Place => "place",
             Stage::Cells => "cells",

@@ -25,17 +25,6 @@ const MARGIN: f32 = 1.4;
 /// Share of the second moments about the point that the moments about the mean must have. At a straight border it is a fifth.
 const ROUNDING: f32 = 1e-3;
 
-/// Variation from which a plane is doubted: both sides of a thin wall nearly twice as thick as its points are apart have 0.1 to
-/// 0.2 together, and their plane may stand across the wall.
-const DOUBTED: f32 = 0.06;
-/// Planes of so many times fewer and so many times more neighbours are tried then, as one of them may be of one side, and the
-/// other of both, along the wall.
-const FEWER: usize = 3;
-/// See [`FEWER`].
-const MORE: usize = 5;
-/// The plane counts in which most neighbours lie, at this slope at most and this many times as many as in the first.
-const FLAT: (f32, f32) = (0.3, 1.3);
-
 /// What the neighbours of one point tell.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Plane {
@@ -84,33 +73,9 @@ impl Planes {
                 if plane.spacing == 0.0 {
                     *plane = self.alone(tree, i, k);
                 }
-                if plane.variation > DOUBTED {
-                    plane.normal = self.flattest(tree, i, k, plane.normal);
-                }
             }
         }
         planes
-    }
-
-    /// The normal of that plane in which most of the `k` nearest of a point lie: of the one given and those of fewer and of more.
-    fn flattest(&mut self, tree: &Octree, i: usize, k: usize, normal: Vec3) -> Vec3 {
-        let others = [(k / FEWER).max(6), MORE * k].map(|k| self.alone(tree, i, k).normal);
-        tree.knn(tree.points[i], k, &mut self.found);
-        let within = |normal: Vec3| {
-            let flat = |n: &&Neighbor| {
-                let off = normal.dot(tree.points[n.index as usize] - tree.points[i]);
-                off * off < FLAT.0 * FLAT.0 * n.distance2
-            };
-            self.found.iter().filter(flat).count() as f32
-        };
-        let mut best = (FLAT.1 * within(normal), normal);
-        for other in others {
-            let count = within(other);
-            if count > best.0 {
-                best = (count, other);
-            }
-        }
-        best.1
     }
 
     /// The plane of one point from its own nearest.

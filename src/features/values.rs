@@ -33,6 +33,19 @@ impl Features {
         tree.points[i] - self.residual[i] * self.normals[i]
     }
 
+    /// Those of some points, as they were measured among all.
+    pub(crate) fn select(&self, indices: &[usize]) -> Features {
+        let pick = |values: &[f32]| indices.iter().map(|&i| values[i]).collect();
+        Features {
+            spacing: pick(&self.spacing),
+            normals: indices.iter().map(|&i| self.normals[i]).collect(),
+            curvature: pick(&self.curvature),
+            variation: pick(&self.variation),
+            residual: pick(&self.residual),
+            ..*self
+        }
+    }
+
     /// Median of the spacing.
     pub fn median_spacing(&self) -> f32 {
         quantile(self.spacing.clone(), 2)

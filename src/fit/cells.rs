@@ -84,12 +84,10 @@ impl Sites {
     /// From each site to the opposite sheet, if one is near and half of the sites around it on its own sheet see theirs there, too.
     /// At a corner a single one may see what is none.
     fn opposite(&self, noise: f32) -> Vec<Vec3> {
-        /// How far the opposite sheet may be, in spacings: both sheets within reach look up to √2 times as dense as one.
-        const ACROSS: f32 = 1.5 * REACH;
         /// Sites that are asked, one more than its neighbours.
         const ASKED: usize = 13;
         let found: Vec<Vec3> = par::map(self.spacing.len(), Vec::new, |i, steps| {
-            let within = (ACROSS * self.spacing[i], noise);
+            let within = (REACH * self.spacing[i], noise);
             across(&self.tree, &self.normals, i, within, steps)
         });
         par::map(found.len(), Vec::new, |i, near| {

@@ -19,7 +19,7 @@ extern "C" {
     fn ascii(this: &PointCrs) -> Option<String>;
 }
 
-#[cfg(any(feature = "engine", feature = "exports"))]
+#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
 impl PointCrs {
     pub(crate) fn read(&self) -> Crs {
         Crs {

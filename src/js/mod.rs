@@ -1,8 +1,8 @@
 //! The border to JavaScript: arguments checked and taken, a call of the crate, results handed over. No algorithm is here.
 //!
 //! 1. `wasm`: the engine's calls: reduce, reconstruct, inspect. `wasm_read`: readers, slice by slice. `wasm_write`: writers.
-//!    `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
-//! 2. `values`: options of a call. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
+//!    `wasm_prepare`: recipes. `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
+//! 2. `values`: options of a call, and reports. `progress`: who hears of it. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
 //! 3. This file is what all of them need: panics kept, errors thrown as objects, objects made.
 //!
 //! **In**: typed arrays, copied once into wasm's memory; options as plain objects whose ranges the crate checks. **Out**: objects of
@@ -10,18 +10,27 @@
 //!
 //! **Cost**: one copy of each array in each direction.
 
-#[cfg(any(feature = "engine", feature = "exports"))]
+#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
 pub mod clouds;
-#[cfg(any(feature = "engine", feature = "exports", feature = "las"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "exports",
+    feature = "las",
+    feature = "prepare"
+))]
 mod crs;
-#[cfg(any(feature = "engine", feature = "exports"))]
-mod viewpoints;
-#[cfg(feature = "engine")]
+#[cfg(any(feature = "engine", feature = "prepare"))]
+mod progress;
+#[cfg(any(feature = "engine", feature = "prepare"))]
 mod values;
+#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
+mod viewpoints;
 #[cfg(feature = "engine")]
 pub mod wasm;
 #[cfg(feature = "pictures")]
 pub mod wasm_pictures;
+#[cfg(feature = "prepare")]
+pub mod wasm_prepare;
 #[cfg(all(
     not(feature = "engine"),
     any(
@@ -99,7 +108,8 @@ pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     feature = "e57",
     feature = "files",
     feature = "las",
-    feature = "packed"
+    feature = "packed",
+    feature = "prepare"
 ))]
 pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
     value

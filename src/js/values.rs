@@ -1,7 +1,10 @@
-//! Options as JavaScript has them.
+//! Options as JavaScript has them, and reports as it gets them.
 
+use crate::base::error::Error;
 use crate::base::params::Value;
+use crate::js::JsResult;
 use js_sys::{Array, Object};
+use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 /// A number, a string, a boolean or an object.
@@ -33,4 +36,12 @@ impl Value for JsOption {
         }
         Some(entries)
     }
+}
+
+/// A report or table as a plain object.
+pub(crate) fn to_js(value: &impl Serialize) -> JsResult {
+    let serializer = serde_wasm_bindgen::Serializer::new().serialize_maps_as_objects(true);
+    value
+        .serialize(&serializer)
+        .map_err(|error| Error::Internal(error.to_string()).into())
 }

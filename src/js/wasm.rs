@@ -6,12 +6,12 @@
 
 use crate::base::error::Error;
 use crate::base::params::{ReduceParams, SurfaceParams};
-use crate::base::progress::{Progress, Stage};
 use crate::cloud::{Attribute, Cloud};
 use crate::formats::Positions;
 use crate::js::clouds::{PointCloud, Precision};
 use crate::js::crs::crs_to_js;
-use crate::js::values::JsOption;
+use crate::js::progress::JsProgress;
+use crate::js::values::{JsOption, to_js};
 use crate::js::viewpoints::views_to_js;
 use crate::js::{JsResult, object, optional};
 use crate::pipeline::{self, Distances, ReducedCloud, Surface};
@@ -20,7 +20,6 @@ use glam::Vec3;
 use js_sys::{
     Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
 };
-use serde::Serialize;
 use std::sync::Mutex;
 use wasm_bindgen::prelude::*;
 
@@ -206,27 +205,4 @@ fn attach(result: JsValue, attributes: &[Attribute], cloud: &Cloud) -> JsResult 
 fn sign(report: &mut ReduceReport) {
     const PAGE: u64 = 65_536;
     report.peak_memory_bytes = core::arch::wasm32::memory_size(0) as u64 * PAGE;
-}
-
-/// Calls `f(stage, fraction)`; a truthy answer, or an exception, stops the job.
-struct JsProgress(Function);
-
-impl Progress for JsProgress {
-    fn update(&mut self, stage: Stage, fraction: f32) -> crate::base::error::Result<()> {
-        let answer = self
-            .0
-            .call2(&JsValue::NULL, &stage.name().into(), &fraction.into());
-        match answer {
-            Ok(stop) if stop.is_falsy() => Ok(()),
-            _ => Err(Error::Cancelled),
-        }
-    }
-}
-
-/// A report or table as a plain object.
-fn to_js(value: &impl Serialize) -> JsResult {
-    let serializer = serde_wasm_bindgen::Serializer::new().serialize_maps_as_objects(true);
-    value
-        .serialize(&serializer)
-        .map_err(|error| Error::Internal(error.to_string()).into())
 }

@@ -1,6 +1,7 @@
 //! The stages in order: what the crate, the package and the page call.
 //!
 //! - [`inspect()`] looks at a cloud and changes nothing: counts, bounds, spacing, noise.
+//! - [`prepare()`] says which points are a floor's, a second thing's or strays, step by step ([`mod@crate::prepare`]).
 //! - [`reduce()`] takes it to fewer points (section 3): `input` (checks, octree, features, outliers), then [`mod@crate::reduce`].
 //! - [`reconstruct()`] takes it to a mesh (section 4): the same, then `sites` (the points that are fitted), [`crate::fit`],
 //!   [`crate::orient`], [`crate::mesh`], [`crate::report`]. [`reconstruct_again`] remembers in a [`Memory`] what another call for
@@ -13,6 +14,7 @@ mod doubtful;
 mod input;
 mod inspect;
 mod memory;
+mod prepare;
 mod reconstruct;
 mod reduce;
 mod results;
@@ -20,6 +22,7 @@ mod sites;
 
 pub use inspect::{Bounds, CloudInfo, inspect};
 pub use memory::Memory;
+pub use prepare::{PieceReport, PlaneReport, Prepared, StepReport, prepare};
 pub use reconstruct::{reconstruct, reconstruct_again, reconstruct_owned};
 pub use reduce::{reduce, reduce_owned};
 pub use results::{Distances, ReducedCloud, Surface};

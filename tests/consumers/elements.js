@@ -8,7 +8,7 @@ export async function elements({ workerUrl, wasmUrl } = {}) {
   Object.assign(PointWeaveElement, { workerUrl, wasmUrl });
   const engine = await createEngine({ threads: 1, workerUrl, wasmUrl });
   const scan = await engine.sample('duck', { count: 3000, seed: 1 });
-  const mesh = await engine.reconstruct(scan);
+  const mesh = await engine.reconstruct(scan, { reduce: { target: 'auto' } }); // as the element does by itself
   const files = [await engine.write(scan), await engine.write(mesh, { format: 'glb' })];
   await engine.dispose();
   return { shown: await Promise.all(files.map(shown)), viewed: viewed(mesh) };

@@ -40,6 +40,9 @@ test('properties say what attributes say, and the other way round', async () => 
       loading: ['eager', 'lazy', 'never'].map((value) => read('loading', value)),
       up: ['z', '-Y', 'w'].map((value) => read('up', value)),
       orientation: ['Inward', 'up', 'down'].map((value) => read('orientation', value)),
+      switched: [read('camera-controls', '', 'controls'), write('controls', false, 'camera-controls'), read('exposure', '2'), read('exposure', '-1'), read('shadow-intensity', 'x', 'shadowIntensity'),
+        read('reveal', 'MANUAL'), read('interaction-prompt', 'no', 'interactionPrompt'), read('auto-rotate-delay', '0', 'autoRotateDelay'), read('camera-orbit', '1deg 2deg 3m', 'cameraOrbit'),
+        write('minFieldOfView', '10deg', 'min-field-of-view'), write('disableZoom', true, 'disable-zoom')],
       flags: [read('flip', ''), read('controls', 'false'), read('controls', ''), read('auto-rotate', '', 'autoRotate')],
       written: [write('ratio', 0.25), write('ratio', null), write('count', 7), write('count', undefined), write('view', 'points'), write('threads', 3),
         write('autoRotate', false, 'auto-rotate'), write('autoRotate', 1, 'auto-rotate'), write('controls', true), write('controls', ''), write('alt', ''), write('src', null)],
@@ -53,6 +56,7 @@ test('properties say what attributes say, and the other way round', async () => 
   assert.deepEqual(seen.loading, ['eager', 'lazy', 'lazy']);
   assert.deepEqual(seen.up, ['z', '-y', 'auto']);
   assert.deepEqual(seen.orientation, ['inward', 'up', 'auto']);
+  assert.deepEqual(seen.switched, [true, null, 2, 1, 0, 'manual', 'auto', 0, '1deg 2deg 3m', '10deg', '']);
   assert.deepEqual(seen.flags, [true, true, true, true]);
   assert.deepEqual(seen.written, ['0.25', null, '7', null, 'points', '3', null, '', '', null, '', null]);
   assert.deepEqual(shown.faults, []);

@@ -3,8 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
-import { read } from 'pointweave';
-import { splitOrigin } from '../../www/src/session/origin.js';
+import { read, splitOrigin } from 'pointweave';
 import { PATIENCE, sharedFile, start } from './browser.mjs';
 import { spherePoints, toXyz } from './scans.mjs';
 

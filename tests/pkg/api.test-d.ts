@@ -1,9 +1,9 @@
 // Never run: `tsc` checks that the package's types say what its documentation does, and that the modules agree.
 
 import {
-  DEFAULTS, PointweaveError, createEngine, flip, inspect, read, reconstruct, reduce, sample, sideInWords, write,
+  DEFAULTS, PointweaveError, createEngine, flip, inspect, prepare, read, reconstruct, reduce, sample, sideInWords, write,
   type CloudInfo, type Engine, type FileCloud, type Format, type OutputFormat, type PointCloud, type ReducedCloud, type Stage,
-  type SurfaceMesh,
+  type Prepared, type Step, type SurfaceMesh,
 } from 'pointweave';
 import { compress } from 'pointweave/meshopt';
 import type * as browser from '../../pkg/index.js';
@@ -33,7 +33,7 @@ type Equal<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ?
 type Method = Exclude<keyof Engine, 'build' | 'threads' | 'reason'>;
 /** The module behind an engine declares the same: `any` in it would agree with everything. */
 export const behind: { [name in Method]: Equal<Parameters<Made[name]>, Parameters<Engine[name]>> } & { [name in Method]: Equal<ReturnType<Made[name]>, ReturnType<Engine[name]>> } =
-  { reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
+  { prepare: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
 
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });
@@ -50,6 +50,13 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   await reconstruct({ positions }, { orientation: 'down' });
   // @ts-expect-error viewpoints are precise
   await reconstruct({ positions, viewpoints: { positions } });
+  const recipe: Step[] = [{ step: 'plane', drop: [0] }, { step: 'pieces', keep: { minShare: 0.1 } }, { step: 'sphere', center: [0, 0, 0], radius: 1, keep: false }];
+  const object: Prepared<Float64Array> = await prepare([exact, exact], recipe, { signal });
+  await reconstruct({ positions }, { prepare: recipe, reduce: { target: { count: object.kept.length } } });
+  // @ts-expect-error a recipe is of the whole call
+  await reconstruct({ positions }, { reduce: { prepare: recipe } });
+  // @ts-expect-error no such step
+  await prepare(exact, [{ step: 'roof' }]);
   const info: CloudInfo = await inspect(exact);
   const cloud: PointCloud = await read(file, { name: 'a.ply' });
   const scan: FileCloud = await read(file, { format: 'las', signal, onProgress: ({ stage }) => console.log(stage) });

@@ -6,11 +6,12 @@ use crate::build;
 use crate::packages;
 use crate::shell::{Result, command, root, run, say};
 
-/// Runs the benchmarks: `orient` natively, the others on a fresh build. `formats` compares files with what other programs read
+/// Runs the benchmarks: `orient` and `prepare` natively, the others on a fresh build. `formats` compares files with what other programs read
 /// and write.
 pub fn bench(arguments: &[String]) -> Result<()> {
     let asked = |name: &str| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
-    let is_own = |argument: &&String| !["orient", "formats"].contains(&argument.as_str());
+    let is_own =
+        |argument: &&String| !["orient", "prepare", "formats"].contains(&argument.as_str());
     let others: Vec<&String> = arguments.iter().filter(is_own).collect();
     if arguments.is_empty() || !others.is_empty() {
         bench_package(&others)?;
@@ -18,8 +19,10 @@ pub fn bench(arguments: &[String]) -> Result<()> {
     if asked("formats") {
         compare_formats()?;
     }
-    if asked("orient") {
-        bench_orientation()?;
+    for (name, example) in [("orient", "orient_truth"), ("prepare", "prepare_truth")] {
+        if asked(name) {
+            bench_natively(name, example)?;
+        }
     }
     Ok(())
 }
@@ -59,22 +62,15 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
     run(&mut bench, "a benchmark failed; its error is above")
 }
 
-/// Which side is out, beside Open3D.
-fn bench_orientation() -> Result<()> {
+/// An example with a known truth, beside Open3D: which side is out, and what is cut off a scan.
+fn bench_natively(name: &str, example: &str) -> Result<()> {
     let mut bench = command("cargo");
-    bench.args([
-        "run",
-        "--release",
-        "--quiet",
-        "--example",
-        "orient_truth",
-        "--",
-    ]);
+    bench.args(["run", "--release", "--quiet", "--example", example, "--"]);
     match packages::open3d() {
         Ok(python) => {
             bench.arg(format!("peer={}", python.display()));
         }
-        Err(sentence) => say(&format!("{sentence}; `orient` leaves its peer out")),
+        Err(sentence) => say(&format!("{sentence}; `{name}` leaves its peer out")),
     }
     run(&mut bench, "the benchmark failed; its error is above")
 }

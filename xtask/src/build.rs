@@ -31,6 +31,8 @@ pub enum Build {
     Pictures,
     /// The writers alone.
     Exports,
+    /// Recipes alone: what is cut before a reduction.
+    Prepare,
     /// Sample scans alone.
     Samples,
     /// The readers of what is packed as a whole.
@@ -38,7 +40,7 @@ pub enum Build {
 }
 
 impl Build {
-    pub const ALL: [Build; 9] = [
+    pub const ALL: [Build; 10] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -48,6 +50,7 @@ impl Build {
         Build::Exports,
         Build::Samples,
         Build::Packed,
+        Build::Prepare,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -61,6 +64,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Prepare => "prepare",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -76,6 +80,7 @@ impl Build {
             Self::E57 => "e57",
             Self::Pictures => "pictures",
             Self::Exports => "exports",
+            Self::Prepare => "prepare",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -92,6 +97,7 @@ impl Build {
             | Self::Pictures
             | Self::Exports
             | Self::Samples
+            | Self::Prepare
             | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
@@ -184,6 +190,22 @@ const WASM_OPT_FEATURES: [&str; 8] = [
     "--enable-reference-types",
     "--enable-multivalue",
 ];
+
+/// [`build`] of the modules of these names, or of all where there is none.
+pub fn build_these(names: &[String]) -> Result<()> {
+    let named = |name: &String| {
+        let known = Build::ALL.into_iter().find(|build| build.name() == name);
+        known.ok_or_else(|| {
+            let all = Build::ALL.map(Build::name).join(", ");
+            format!("there is no module `{name}`; there are {all}")
+        })
+    };
+    let builds: Vec<Build> = names.iter().map(named).collect::<Result<_>>()?;
+    if builds.is_empty() {
+        return build();
+    }
+    make(&builds)
+}
 
 /// `cargo xtask build`: what is written from the table of options, the builds of pkg/wasm and the element in one file.
 pub fn build() -> Result<()> {

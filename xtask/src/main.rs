@@ -27,7 +27,7 @@ Pointweave's own commands. Each sets up what is missing first.
 
 Usage: cargo xtask <command> [options]
 
-  build                 what the table of options says, into pkg/ and www/, and all wasm builds, into pkg/wasm/
+  build [NAME…]         what the table of options says, into pkg/ and www/, and all wasm builds, or these, into pkg/wasm/
   options               what the table of options says, and nothing else
   page                  the builds and the page, into www/dist/, for any static server
   serve [--port N]      the same, served on localhost (default port 8080) as soon as there is something to see
@@ -36,7 +36,7 @@ Usage: cargo xtask <command> [options]
   test PART [FILE [NAME]]
                         one of them; of native, wasm, pkg, element and page one file alone
                         (`test pkg cli` runs tests/pkg/cli.test.mjs), or its tests of that name
-  bench [ARGS…]         the benchmarks, after a build; `orient` and what else tests/bench/bench.mjs knows
+  bench [ARGS…]         the benchmarks, after a build; `orient`, `prepare` and what else tests/bench/bench.mjs knows
   setup                 install whatever the other commands need, and nothing else
 
 Environment: CHROMIUM, CHROMEDRIVER, FIREFOX and GECKODRIVER name programs to use instead of those found;
@@ -60,7 +60,7 @@ fn run(args: &[String]) -> Result<()> {
         None => ("help", args),
     };
     match command {
-        "build" => expect_no_options(arguments).and_then(|()| build::build()),
+        "build" => build::build_these(arguments),
         "options" => expect_no_options(arguments).and_then(|()| options::write()),
         "page" => expect_no_options(arguments)
             .and_then(|()| build::ensure())

@@ -117,7 +117,7 @@ const PAGE: f32 = 0.3;
 
 fn minutes(build: Build) -> f32 {
     match build {
-        Build::Single | Build::Threads => 2.5,
+        Build::Single | Build::Threads | Build::Prepare => 2.5,
         _ => 1.0,
     }
 }

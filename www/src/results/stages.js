@@ -4,6 +4,7 @@ const WORDS = /** @type {Record<string, string>} */ ({
   read: 'Reading the file',
   octree: 'Sorting the points',
   features: 'Measuring curvature and noise',
+  prepare: 'Cutting the object out',
   cluster: 'Choosing the points to keep',
   place: 'Placing them on the surface',
   cells: 'Dividing the surface into patches',

@@ -1,8 +1,7 @@
-import { createEngine, flip, read, reconstruct, reduce, sample, write } from 'pointweave';
+import { createEngine, flip, read, reconstruct, reduce, sample, write, splitOrigin } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
-import { splitOrigin } from './origin.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 import { Emitter } from '../state/emitter.js';

@@ -1,4 +1,4 @@
-/** @import { Placed } from 'pointweave/viewer' */
+/** @import { Placed } from '../viewer.js' */
 
 /** Single precision that moves a coordinate by no more than this share of the extent along its axis loses nothing of a scan. */
 const ROUNDING = 2 ** -22;

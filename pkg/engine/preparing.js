@@ -1,0 +1,113 @@
+/** A recipe's work in JavaScript: what wasm looks at, the points that are left, and results of them told of the points that were given. */
+import { badOption, isObject, rule } from './rules.js';
+
+/** @import { PointCloud, Prepared, Step } from '../types.js' */
+/** @import { Watch } from './worker-host.js' */
+
+/** Stands for a point that a recipe dropped. */
+const DROPPED = 2 ** 32 - 1;
+
+/** About how much of a call with `prepare` the recipe takes. */
+const SHARE = 0.3;
+
+const EXPECTED = 'an array of steps, each an object with step';
+
+/** The option `prepare`. What a step holds is checked in Rust. */
+export const RECIPE = rule(EXPECTED, (value) => Array.isArray(value) && value.every(isObject));
+
+/** @param {unknown} steps @returns {Step[]} */
+export function checkRecipe(steps) {
+  if (!RECIPE.accepts(steps, '')) throw badOption('prepare', EXPECTED, steps);
+  return /** @type {Step[]} */ (steps);
+}
+
+/**
+ * What a recipe looks at, in memory of its own.
+ * @param {PointCloud} cloud
+ * @returns {PointCloud}
+ */
+export function lookedAt({ positions, normals, viewpoints, up }) {
+  return {
+    positions: positions.slice(),
+    normals: normals?.slice(),
+    viewpoints: viewpoints && { positions: viewpoints.positions.slice(), of: viewpoints.of?.slice() },
+    up,
+  };
+}
+
+/**
+ * @param {PointCloud} cloud
+ * @param {{ kept: Uint32Array, labels: Uint8Array, steps: any[] }} found
+ * @returns {Prepared<any>}
+ */
+export function preparedOf(cloud, { kept, labels, steps }) {
+  return { cloud: select(cloud, kept), kept, labels, steps };
+}
+
+/**
+ * Some points of a cloud, with all that is theirs.
+ * @template {PointCloud} T
+ * @param {T} cloud
+ * @param {ArrayLike<number>} kept their indices
+ * @returns {T}
+ */
+export function select(cloud, kept) {
+  const { positions, colors, normals, attributes, viewpoints } = cloud;
+  const chosen = Object.entries(attributes ?? {}).map(([name, values]) => [name, picked(values, kept, 1)]);
+  const others = Object.entries(cloud).filter(([, value]) => value !== undefined);
+  return /** @type {T} */ ({
+    ...Object.fromEntries(others),
+    positions: picked(positions, kept, 3),
+    ...(colors && { colors: picked(colors, kept, 3) }),
+    ...(normals && { normals: picked(normals, kept, 3) }),
+    ...(attributes && { attributes: Object.fromEntries(chosen) }),
+    ...(viewpoints && { viewpoints: { positions: viewpoints.positions, ...(viewpoints.of && { of: picked(viewpoints.of, kept, 1) }) } }),
+  });
+}
+
+/**
+ * @template {Uint8Array | Uint32Array | Float32Array | Float64Array} A
+ * @param {A} values
+ * @param {ArrayLike<number>} kept
+ * @param {number} each
+ */
+function picked(values, kept, each) {
+  const some = /** @type {A} */ (new /** @type {any} */ (values.constructor)(each * kept.length));
+  for (let i = 0; i < kept.length; i++) {
+    for (let k = 0; k < each; k++) some[each * i + k] = values[each * kept[i] + k];
+  }
+  return some;
+}
+
+/**
+ * A result whose indices and arrays are of the points that were given to the call, and not of those that a recipe left.
+ * @param {any} result
+ * @param {Prepared<any>} prepared
+ */
+export function ofAllPoints(result, { kept, labels, steps }) {
+  const cloud = result.cloud ?? result;
+  cloud.nearest = cloud.nearest.map((/** @type {number} */ i) => kept[i]);
+  if (cloud.assignment) cloud.assignment = spread(cloud.assignment, kept, new Uint32Array(labels.length).fill(DROPPED));
+  if (result.distances) result.distances.points = spread(result.distances.points, kept, new Float32Array(labels.length).fill(NaN));
+  result.prepared = { labels, steps };
+  return result;
+}
+
+/** @template {Uint32Array | Float32Array} A @param {A} values @param {Uint32Array} kept @param {A} into */
+function spread(values, kept, into) {
+  kept.forEach((i, k) => (into[i] = values[k]));
+  return into;
+}
+
+/**
+ * The two halves of a call with `prepare`, each of which tells its own progress, as parts of the whole.
+ * @param {Watch} watch
+ * @returns {[Watch, Watch]}
+ */
+export function halves({ signal, onProgress }) {
+  const part = (/** @type {number} */ from, /** @type {number} */ to) => ({
+    signal,
+    onProgress: onProgress && ((/** @type {import('../types.js').Progress} */ progress) => onProgress({ ...progress, overall: from + (to - from) * progress.overall })),
+  });
+  return [part(0, SHARE), part(SHARE, 1)];
+}

@@ -1,0 +1,244 @@
+//! Recipes, on scans of which it is known what every point was taken from.
+
+#[path = "common/staged.rs"]
+mod staged;
+
+use pointweave::base::progress::Silent;
+use pointweave::pipeline::{Prepared, prepare};
+use pointweave::prepare::pieces::{GAP, Keep};
+use pointweave::prepare::planes::{Drop, MIN_SHARE};
+use pointweave::prepare::recipe::Step;
+use pointweave::prepare::regions::Region;
+use pointweave::samples::{Model, sample};
+use pointweave::{Cloud, Error, Stage as Part};
+use staged::{Body, Scan, Stage, Staged};
+
+fn plane(drop: Drop) -> Step {
+    Step::Plane {
+        drop,
+        behind: true,
+        min_share: MIN_SHARE,
+        seed: 0,
+    }
+}
+
+fn largest() -> Step {
+    Step::Pieces {
+        keep: Keep::Largest(1),
+        gap: GAP,
+    }
+}
+
+/// Strays, then what carries, then all but the largest piece.
+fn tidy() -> Vec<Step> {
+    vec![Step::Outliers, Step::Flying, plane(Drop::All), largest()]
+}
+
+fn cloud_of(scan: &Scan) -> Cloud {
+    Cloud::from_f64(&scan.positions()).unwrap()
+}
+
+/// Shares of the object's points that are kept and of the others that are dropped, without strays that touch the object.
+fn shares(scan: &Scan, prepared: &Prepared) -> (f64, f64) {
+    let touches = |i: usize| {
+        scan.bodies[i] == Body::Stray && scan.model.distance(scan.points[i]) < 0.01 * scan.diagonal
+    };
+    let share = |of_object: bool| {
+        let is_one = |&i: &usize| (scan.bodies[i] == Body::Object) == of_object && !touches(i);
+        let those: Vec<usize> = (0..scan.points.len()).filter(is_one).collect();
+        let right = those
+            .iter()
+            .filter(|&&i| (prepared.dropped_by[i] == 0) == of_object);
+        right.count() as f64 / those.len() as f64
+    };
+    (share(true), share(false))
+}
+
+#[test]
+fn objects_on_tables_and_in_rooms_are_left_alone() {
+    for (model, stage, second) in [
+        (Model::Duck, Stage::Room, Some(Model::Part)),
+        (Model::Pig, Stage::Table, Some(Model::Part)),
+        (Model::Part, Stage::Table, None),
+    ] {
+        let scan = Staged {
+            model,
+            stage,
+            second,
+            strays: true,
+            points: 25_000,
+            noise: 5e-4,
+            seed: 1,
+        }
+        .scan();
+        let prepared = prepare(&cloud_of(&scan), &tidy(), &mut Silent).unwrap();
+        let (kept, dropped) = shares(&scan, &prepared);
+        let name = format!("{} {stage:?} {second:?}: {kept} {dropped}", model.name());
+        assert!(kept >= 0.99 && dropped >= 0.99, "{name}");
+    }
+}
+
+#[test]
+fn a_floor_is_the_plane_that_things_stand_on_and_an_objects_face_is_none() {
+    let scan = Staged {
+        model: Model::Part,
+        stage: Stage::Room,
+        second: None,
+        strays: false,
+        points: 16_000,
+        noise: 5e-4,
+        seed: 3,
+    }
+    .scan();
+    let cloud = cloud_of(&scan);
+    let looked = prepare(&cloud, &[plane(Drop::None)], &mut Silent).unwrap();
+    assert_eq!(looked.kept.len(), cloud.len());
+    let planes = looked.steps[0].planes.as_ref().unwrap();
+    let floor = planes.iter().find(|plane| plane.floor).unwrap();
+    assert!(floor.normal[1] > 0.9999 && (floor.point[1] - scan.ground).abs() < 0.01);
+    assert!(floor.carries && !floor.dropped);
+    // Two walls, seen from within.
+    let walls = planes
+        .iter()
+        .filter(|plane| plane.carries && plane.normal[1].abs() < 0.01);
+    assert_eq!(walls.count(), 2);
+    // The floor alone goes, and the numbers of the report name the same planes.
+    let number = planes.iter().position(|plane| plane.floor).unwrap() as u32;
+    let floor = prepare(&cloud, &[plane(Drop::Floor)], &mut Silent).unwrap();
+    let named = prepare(&cloud, &[plane(Drop::Numbers(vec![number]))], &mut Silent).unwrap();
+    assert_eq!(floor.kept, named.kept);
+    let labels = looked.steps[0].labels.as_ref().unwrap();
+    let own = labels.iter().filter(|&&label| label == number).count();
+    assert_eq!(
+        own,
+        looked.steps[0].planes.as_ref().unwrap()[number as usize].points
+    );
+    // A disc of 1.1 diagonals less what the part hides, and far from its frame's origin the same.
+    let own = &planes[number as usize];
+    let disc = std::f64::consts::PI * (1.1 * scan.diagonal).powi(2);
+    assert!(
+        (0.6..1.2).contains(&(own.area / disc)),
+        "{}",
+        own.area / disc
+    );
+    let away = [500_000.0, 20.0, 4e6];
+    let map: Vec<f64> = scan
+        .positions()
+        .iter()
+        .enumerate()
+        .map(|(k, x)| x + away[k % 3])
+        .collect();
+    let far = prepare(
+        &Cloud::from_f64(&map).unwrap(),
+        &[plane(Drop::Floor)],
+        &mut Silent,
+    )
+    .unwrap();
+    let other = far.steps[0].dropped.abs_diff(floor.steps[0].dropped);
+    assert!(other <= cloud.len() / 1000, "{other}");
+    // What is clean already has no floor: the part's faces are its own.
+    let clean = sample(Model::Part, 20_000, 4);
+    let clean = Cloud::from_f32(&clean.positions).unwrap();
+    let kept = prepare(&clean, &[plane(Drop::All)], &mut Silent).unwrap();
+    assert_eq!(kept.kept.len(), clean.len());
+    assert!(kept.steps[0].reason.contains("no plane"));
+    assert!(!kept.steps[0].planes.as_ref().unwrap().is_empty());
+}
+
+#[test]
+fn steps_go_in_order_and_say_what_they_did() {
+    let duck = sample(Model::Duck, 6000, 1);
+    let cloud = Cloud::from_f32(&duck.positions).unwrap();
+    let inside = Region::cuboid([-100.0, 0.0, -100.0], [100.0, 100.0, 100.0], None).unwrap();
+    let ball = Region::sphere([0.0, 8.0, 0.0], 3.0).unwrap();
+    let steps = [
+        Step::Region {
+            region: inside,
+            keep: true,
+        },
+        Step::Region {
+            region: ball,
+            keep: false,
+        },
+        Step::Outliers,
+        largest(),
+    ];
+    let prepared = prepare(&cloud, &steps, &mut Silent).unwrap();
+    let positions = cloud.positions_f64();
+    for (i, p) in positions.chunks_exact(3).enumerate() {
+        let far = p[0] * p[0] + (p[1] - 8.0) * (p[1] - 8.0) + p[2] * p[2];
+        let expected = if p[1] < 0.0 {
+            1
+        } else if far <= 9.0 {
+            2
+        } else {
+            0
+        };
+        let found = prepared.dropped_by[i];
+        assert!(
+            found == expected || (expected == 0 && found > 2),
+            "point {i}: {found}"
+        );
+    }
+    let kept: Vec<u32> = (0..cloud.len() as u32)
+        .filter(|&i| prepared.dropped_by[i as usize] == 0)
+        .collect();
+    assert_eq!(kept, prepared.kept);
+    let names: Vec<&str> = prepared.steps.iter().map(|step| step.step).collect();
+    assert_eq!(names, ["box", "sphere", "outliers", "pieces"]);
+    let mut left = cloud.len();
+    for step in &prepared.steps {
+        assert_eq!(step.kept + step.dropped, left);
+        left = step.kept;
+    }
+    assert_eq!(cloud.select(&prepared.kept).unwrap().len(), left);
+    // Pieces of a scan are those of what is left.
+    let pieces = prepared.steps[3].pieces.as_ref().unwrap();
+    assert!(pieces[0].min[1] >= -1e-5 && pieces[0].kept);
+}
+
+#[test]
+fn a_step_that_leaves_nothing_is_an_error_and_a_recipe_can_be_stopped() {
+    let duck = sample(Model::Duck, 3000, 1);
+    let cloud = Cloud::from_f32(&duck.positions).unwrap();
+    let far = Region::sphere([1e3, 0.0, 0.0], 1.0).unwrap();
+    let nothing = [
+        Step::Outliers,
+        Step::Region {
+            region: far,
+            keep: true,
+        },
+    ];
+    match prepare(&cloud, &nothing, &mut Silent) {
+        Err(Error::BadOption { option, .. }) => assert_eq!(option, "prepare[1]"),
+        other => panic!("{other:?}"),
+    }
+    for step in [Step::Outliers, Step::Flying, plane(Drop::All), largest()] {
+        let mut stop = |stage: Part, _: f32| stage != Part::Prepare;
+        let stopped = prepare(&cloud, &[step], &mut stop);
+        assert_eq!(stopped.unwrap_err(), Error::Cancelled);
+    }
+}
+
+#[test]
+fn the_same_scan_has_the_same_labels_in_any_order() {
+    let scan = Staged {
+        model: Model::Duck,
+        stage: Stage::Table,
+        second: None,
+        strays: true,
+        points: 8000,
+        noise: 5e-4,
+        seed: 2,
+    }
+    .scan();
+    let positions = scan.positions();
+    let once = prepare(&cloud_of(&scan), &tidy(), &mut Silent).unwrap();
+    let again = prepare(&cloud_of(&scan), &tidy(), &mut Silent).unwrap();
+    assert_eq!(once.dropped_by, again.dropped_by);
+    let turned: Vec<f64> = positions.chunks_exact(3).rev().flatten().copied().collect();
+    let back = prepare(&Cloud::from_f64(&turned).unwrap(), &tidy(), &mut Silent).unwrap();
+    let same = once.dropped_by.iter().zip(back.dropped_by.iter().rev());
+    let other = same.filter(|(a, b)| a != b).count();
+    assert!(other <= 3, "{other} of {}", scan.points.len());
+}
