@@ -133,9 +133,15 @@ pub(super) fn header_names<'a>(
     dialect: Dialect,
     width: usize,
 ) -> Option<(&'a Numbered, Vec<String>)> {
-    /// Lines above the rows.
+    /// Lines above the rows, and bytes of them.
     const MOST: usize = 64;
-    before.iter().rev().take(MOST).find_map(|line| {
+    const MOST_BYTES: usize = 1 << 17;
+    let mut bytes = 0;
+    let mut near = before.iter().rev().take(MOST).take_while(|line| {
+        bytes += line.bytes.len();
+        bytes <= MOST_BYTES
+    });
+    near.find_map(|line| {
         let bytes = &line.bytes[line.bytes.iter().take_while(|b| b" \t".contains(b)).count()..];
         let marks = bytes.iter().take_while(|b| b"#/%!".contains(b)).count();
         let text = &bytes[marks..];
