@@ -5,6 +5,7 @@ import { fetchBytes, ownAddress } from './fetching.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 import { Emitter } from '../state/emitter.js';
+import { say } from '../words/say.js';
 
 /**
  * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
@@ -67,7 +68,7 @@ export class Session extends Emitter {
   /** Generates one of the package's simulated scans and makes its mesh. */
   openSample(/** @type {SampleName} */ model) {
     const { title, count } = SAMPLES[model];
-    return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
+    return this.#open({ title: say(title), file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
   }
 
   /**
@@ -230,11 +231,15 @@ export class Session extends Emitter {
   async #open(source, load) {
     const job = this.#begin('reading');
     try {
+      // One pass over the points a task.
       const cloud = splitOrigin(await load(job.signal));
+      await nextTask();
+      const frame = frameOf(cloud);
+      await nextTask();
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = { ...source, cloud, count, frame: frameOf(cloud), own: { up: cloud.up, unit: cloud.unit } };
+      this.scan = { ...source, cloud, count, frame, own: { up: cloud.up, unit: cloud.unit } };
       this.outcome = this.#whole = null;
       this.emit('opened', this.scan);
     } catch (error) {
@@ -295,6 +300,11 @@ export class Session extends Emitter {
 /** @param {Outcome} outcome @param {SurfaceMesh} mesh @returns {Outcome} */
 function withMesh(outcome, mesh) {
   return { ...outcome, mesh, reduced: mesh.cloud };
+}
+
+/** Lets the browser draw and answer in between. */
+function nextTask() {
+  return new Promise((next) => setTimeout(next));
 }
 
 /** A file's name without its ending. */

@@ -1,5 +1,6 @@
 import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
+import { say } from '../words/say.js';
 
 /** @import { Outcome, Scan } from './session.js' */
 
@@ -31,8 +32,8 @@ export class Sharing {
   show(address, scan, file) {
     this.#link.value = address;
     this.#note.textContent = scan && !scan.model && !scan.src
-      ? 'The link holds your settings. The scan itself stays on this device: send it yourself.'
-      : 'Whoever opens it sees this scan with these settings.';
+      ? say('The link holds your settings. The scan itself stays on this device: send it yourself.')
+      : say('Whoever opens it sees this scan with these settings.');
     this.#file = file;
     this.#title = scan?.title ?? 'A scan';
     this.#write();
