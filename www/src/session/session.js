@@ -1,4 +1,4 @@
-import { createEngine, flip, read, reconstruct, reduce, sample, write, splitOrigin } from 'pointweave';
+import { autoCount, createEngine, flip, read, reconstruct, reduce, sample, splitOrigin, write } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
@@ -22,13 +22,6 @@ import { say } from '../words/say.js';
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
-
-/** The least and the most points that the page keeps of its own accord: enough for a shape, few enough to wait for. */
-const ENOUGH = 2_000;
-const AMPLE = 60_000;
-/** The same for a phone, whose processor and memory are smaller. */
-const AMPLE_ON_PHONE = 20_000;
-const PHONE = '(pointer: coarse) and (max-width: 900px)';
 
 /** Stages whose settings have not changed are not run again. */
 const REMEMBERED = { keep: true };
@@ -115,7 +108,7 @@ export class Session extends Emitter {
 
   /** What is kept: what the person has chosen, or what suits the scan. @returns {Target} */
   get target() {
-    return this.settings.target ?? { kind: 'ratio', value: this.scan ? startingShare(this.scan.count) : TARGETS.ratio.start };
+    return this.settings.target ?? { kind: 'ratio', value: this.scan ? autoCount(this.scan.count) / this.scan.count : TARGETS.ratio.start };
   }
 
   /** Works again if the settings ask for something else than the last job made or makes. */
@@ -310,11 +303,4 @@ function nextTask() {
 /** A file's name without its ending. */
 function stem(/** @type {string} */ name) {
   return name.replace(/\.[^.]*$/, '') || 'scan';
-}
-
-/** The share to keep of a new scan, until the person has chosen one. */
-function startingShare(/** @type {number} */ count) {
-  const ample = matchMedia(PHONE).matches ? AMPLE_ON_PHONE : AMPLE;
-  const kept = Math.min(ample, Math.max(ENOUGH, count * TARGETS.ratio.start));
-  return Math.min(1, kept / count);
 }

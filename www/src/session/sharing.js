@@ -50,18 +50,10 @@ export class Sharing {
   }
 }
 
-/** A page without a bundler needs to be told where the packages are; after `npm install pointweave three` they are there. */
-const IMPORTS = `<script type="importmap">
-{ "imports": {
-  "pointweave/element": "/node_modules/pointweave/element.js",
-  "three": "/node_modules/three/build/three.module.js",
-  "three/addons/": "/node_modules/three/examples/jsm/"
-} }
-</script>
-<script type="module">import 'pointweave/element';</script>
-`;
+/** The element with all that it needs is one file of the npm package, whose folder lies beside the page. */
+const ELEMENT = '<script type="module" src="pointweave/element.min.js"></script>\n';
 
 function snippet(/** @type {string} */ file, /** @type {string} */ title, /** @type {string} */ poster) {
   const text = (/** @type {string} */ words) => words.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model"${poster && ` poster="${text(encodeURI(poster))}"`} controls></point-weave>`;
+  return `${ELEMENT}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model"${poster && ` poster="${text(encodeURI(poster))}"`} controls></point-weave>`;
 }
