@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile, readdir } from 'node:fs/promises';
 import { test } from 'node:test';
+import { TELLS, TOLD_BY } from '../../pkg/engine/side.js';
 import { PAINT_WORDS } from '../../pkg/viewer/words.js';
 import { FIELDS, TARGETS } from '../../www/src/controls/fields-table.js';
 import { SAMPLES } from '../../www/src/controls/samples.js';
@@ -40,7 +41,7 @@ function textsOfTables() {
     ...fields, ...Object.values(TARGETS).map(({ label }) => label), ...Object.values(SAMPLES).map(({ title }) => title), ...Object.values(UNITS),
     ...Object.values(VIEWS), ...Object.values(SIDES), ...Object.values(MESSAGES).flatMap(Object.values), ...Object.values(STAGES),
     ...ROLES.map(([, name]) => name), ...Object.values(FORMATS).flatMap(Object.values).flatMap(({ use, prints }) => [use, prints ?? '']), ...Object.values(NAMES),
-    ...Object.values(names), density.title, ...Object.values(error.titles), sharp.title, sharp.sharp, sharp.smooth,
+    TELLS, ...Object.values(TOLD_BY), ...Object.values(names), density.title, ...Object.values(error.titles), sharp.title, sharp.sharp, sharp.smooth,
   ];
 }
 
@@ -58,3 +59,26 @@ for (const language of ['de', 'fr']) {
     for (const [text, words] of Object.entries(table)) assert.deepEqual(places(words), places(text), text);
   });
 }
+
+test('the browser chooses the language, of the page and of what is measured beside it', { timeout: PATIENCE }, async (t) => {
+  const server = await start(t);
+  const site = await server.open({ locale: 'de-DE' }, undefined, '#count=2000');
+  const { page } = site;
+  await site.made();
+  assert.equal(await page.getAttribute('html', 'lang'), 'de');
+  assert.equal(await page.innerText('#caption-title'), 'Spielzeugente');
+  assert.equal(await page.innerText('#caption-detail'), 'simulierter Scan, 35.647 Punkte');
+  assert.equal(await page.innerText('#choose'), 'Scan öffnen');
+  await page.fill('#keep-field', '0');
+  assert.equal(await page.innerText('#keep-error'), 'Möglich ist eine ganze Zahl ab 1.');
+  await site.paint('error');
+  assert.match(await page.innerText('#legend'), /Abstand zum Scan[^]*0,\d+[^]*als Anteil der Diagonale/);
+  // Nothing that a person sees is left in English.
+  const seen = await page.evaluate(() => document.body.innerText.split('\n').map((line) => line.trim()).filter(Boolean));
+  const english = seen.filter((line) => / (the|and|of|is|with) /.test(` ${line} `));
+  assert.deepEqual(english, []);
+  await page.context().close();
+  const other = await server.open({ locale: 'pt-BR' }, undefined, '#count=2000');
+  await other.made();
+  assert.equal(await other.page.innerText('#caption-title'), 'Toy duck', 'in English for all others');
+});

@@ -43,7 +43,7 @@ export class SideCard {
     this.stop();
     this.#box.hidden = !mesh;
     if (!mesh) return;
-    const [first, ...rest] = sideInWords(mesh.report);
+    const [first, ...rest] = sideInWords(mesh.report, say);
     this.#words.textContent = `${first.toUpperCase()}${rest.join('')}${all ? `; ${say('all of it was turned by hand')}` : ''}${piece ? `; ${say('a piece was turned by hand')}` : ''}.`;
     this.#piece.hidden = mesh.report.components < 2;
   }
