@@ -380,7 +380,7 @@ export function createEngine(options?: EngineOptions): Promise<Engine>;
 export function flip<T extends SurfaceMesh>(mesh: T, options?: { triangle?: number }): T;
 
 /** What told which side is out, for people: `report.orientation` as part of a sentence. */
-export function sideInWords(report: Pick<SurfaceReport, 'orientation'>): string;
+export function sideInWords(report: Pick<SurfaceReport, 'orientation'>, say?: (text: string) => string): string;
 
 /**
  * Splits an origin of whole numbers off a cloud in double precision whose coordinates are far from zero for its size, as those of maps

@@ -143,7 +143,11 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
 
   await t.test('the picture comes back when the graphics context was lost', async () => {
     const before = await site.picture();
-    await page.evaluate(async () => {
+    const said = [];
+    const hear = (message) => said.push(message.text());
+    page.on('console', hear);
+    const told = await page.evaluate(async () => {
+      const note = document.querySelector('#graphics-lost');
       const [shared] = globalThis.contexts;
       const { canvas } = shared;
       const context = shared.getExtension('WEBGL_lose_context');
@@ -151,11 +155,16 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
       const lost = event('webglcontextlost');
       context.loseContext();
       await lost;
+      const shown = note.checkVisibility();
       const restored = event('webglcontextrestored');
       setTimeout(() => context.restoreContext());
       await restored;
+      return [shown, note.checkVisibility()];
     });
     await site.settled();
+    page.off('console', hear);
+    assert.deepEqual(told, [true, false], 'it is said as long as it is so');
+    assert.deepEqual(said.filter((text) => /THREE/.test(text)), []);
     assert.ok(difference(before, await site.picture()) < 0.001);
   });
 

@@ -206,9 +206,8 @@ test('an expert\'s visit', { timeout: 2 * PATIENCE }, async (t) => {
       const html = `<!doctype html><title>own</title><link rel="icon" href="data:,">${body}`;
       if (pathname === '/own.html') return route.fulfill({ contentType: 'text/html', body: html });
       if (pathname === '/bowl-mesh.glb') return route.fulfill({ body: mesh });
-      const [, name, path] = /^\/node_modules\/(pointweave|three)\/(.*)$/.exec(pathname);
-      const folder = name === 'three' ? '../node_modules/three/' : '../../pkg/';
-      return route.fulfill({ contentType: 'text/javascript', body: await readFile(new URL(folder + path, import.meta.url)) });
+      const [, path] = /^\/pointweave\/(.*)$/.exec(pathname);
+      return route.fulfill({ contentType: 'text/javascript', body: await readFile(new URL(`../../pkg/${path}`, import.meta.url)) });
     };
     const own = await server.open({ serviceWorkers: 'block' }, (opened) => opened.route('**/*', answer), 'own.html');
     await own.page.waitForFunction(() => document.querySelector('point-weave').loaded, null, { timeout: PATIENCE });

@@ -25,6 +25,7 @@ import { Shown } from './state/shown.js';
 import { forget, keep, keepsSome, kept } from './state/keeping.js';
 import { Steps } from './controls/steps.js';
 import { meaningOf } from './controls/targets.js';
+import { say } from './words/say.js';
 
 /**
  * @import { Key } from './keys.js'
@@ -63,7 +64,7 @@ export class App {
   #progress = new ProgressBar(() => this.#session.cancel());
   #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
-  #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, 'comparison'));
+  #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, say('comparison')));
 
   constructor() {
     this.#listenToSession();
@@ -146,10 +147,10 @@ export class App {
     const keys = [
       ...this.#look.keys,
       ...this.#steps.keys,
-      { key: 's', does: 'Save the picture', act: savePicture },
-      { key: 'o', does: 'Open a scan from this device', act: this.#choose },
-      { key: '?', does: 'This list', act: () => showHelp() },
-      { key: 'Escape', shown: 'Esc', does: 'Close a message or menu, cancel the work', act: () => this.#escape() },
+      { key: 's', does: say('Save the picture'), act: savePicture },
+      { key: 'o', does: say('Open a scan from this device'), act: this.#choose },
+      { key: '?', does: say('This list'), act: () => showHelp() },
+      { key: 'Escape', shown: 'Esc', does: say('Close a message or menu, cancel the work'), act: () => this.#escape() },
     ];
     const showHelp = helpDialog(describeKeys(keys));
     byId('help-open', HTMLButtonElement).addEventListener('click', showHelp);
@@ -165,10 +166,10 @@ export class App {
     this.#root.dataset.state = state;
     this.#run.hidden = true;
     if (state === 'reading') {
-      this.#progress.start('Reading the scan');
+      this.#progress.start(say('Reading the scan'));
     } else if (state === 'working') {
       this.#numbers.stale();
-      this.#progress.start('Starting');
+      this.#progress.start(say('Starting'));
     } else {
       this.#progress.stop();
     }
@@ -210,8 +211,8 @@ export class App {
     this.#comparison.made(outcome);
     const { turned = [] } = this.#shown.value.edits;
     if (turned.length) this.#session.turn(turned);
-    const kept = `Done: ${format.points(reduced.positions.length / 3)} kept`;
-    announce(mesh ? `${kept}, ${format.count(mesh.indices.length / 3)} triangles` : `${kept}, no mesh`);
+    const points = format.count(reduced.positions.length / 3);
+    announce(mesh ? say('Done: {points} points kept, {triangles} triangles', { points, triangles: format.count(mesh.indices.length / 3) }) : say('Done: {points} points kept, no mesh', { points }));
   }
 
   /** A person turns a piece over, or all. @param {number} [triangle] */
@@ -220,7 +221,7 @@ export class App {
     if (triangle === undefined) session.flip();
     else session.turn([...session.turned, triangle]);
     this.#note({ edits: { ...this.#shown.value.edits, turned: session.turned } });
-    announce(triangle === undefined ? 'The mesh was flipped' : 'The piece was flipped');
+    announce(triangle === undefined ? say('The mesh was flipped') : say('The piece was flipped'));
   }
 
   #turned(/** @type {Outcome} */ outcome) {
@@ -271,7 +272,7 @@ export class App {
   }
 
   #cancelled() {
-    announce('Cancelled');
+    announce(say('Cancelled'));
     this.#run.hidden = !this.#session.scan;
   }
 
@@ -358,7 +359,9 @@ function same(/** @type {unknown} */ one, /** @type {unknown} */ other) {
 function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
   const { faces = 0, sampled = 0 } = cloud.file ?? {};
   const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
-  const points = format.points(count) + (sampled ? `, taken from ${format.count(faces)} faces` : faces ? `, the corners of ${format.count(faces)} faces` : '');
-  const rest = out ? `, ${format.count(out)} without a place left out` : '';
-  return `${model ? 'simulated scan, ' : ''}${points}${rest}`;
+  const parts = [model ? say('simulated scan') : '', format.points(count)];
+  if (sampled) parts.push(say('taken from {faces} faces', { faces: format.count(faces) }));
+  else if (faces) parts.push(say('the corners of {faces} faces', { faces: format.count(faces) }));
+  if (out) parts.push(say('{count} without a place left out', { count: format.count(out) }));
+  return parts.filter(Boolean).join(', ');
 }

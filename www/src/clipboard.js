@@ -1,10 +1,11 @@
 import { announce } from './dom.js';
+import { say } from './words/say.js';
 
 /** Puts a text on the clipboard, and says so on the button for a moment. */
 export async function copyText(/** @type {string} */ text, /** @type {HTMLButtonElement} */ button) {
   const label = button.dataset.label ?? button.textContent ?? '';
   button.dataset.label = label;
-  const done = (await write(text)) ? 'Copied' : 'Not allowed: select and copy it yourself';
+  const done = (await write(text)) ? say('Copied') : say('Not allowed: select and copy it yourself');
   button.textContent = done;
   announce(done);
   setTimeout(() => (button.textContent = label), 2000);

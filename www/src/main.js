@@ -3,6 +3,9 @@ import { showBuilding } from './building.js';
 import { byId } from './dom.js';
 import { workOffline } from './offline.js';
 import { canCompute } from './support.js';
+import { translatePage } from './words/page-words.js';
+
+translatePage();
 
 if (canCompute()) new App().start();
 else {

@@ -87,7 +87,7 @@ export class Amount {
   /** For the slider, in words: what the value means. */
   describe(/** @type {string} */ words) {
     const shown = this.#field.value || this.#field.placeholder;
-    this.#slider.setAttribute('aria-valuetext', `${shown} ${this.#range.unit.replace('%', 'per cent')} ${words}`.trim());
+    this.#slider.setAttribute('aria-valuetext', `${shown} ${this.#range.unit && say('per cent')} ${words}`.trim());
   }
 
   /** What the field takes, in words. */

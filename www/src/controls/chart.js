@@ -1,4 +1,5 @@
 import * as format from '../results/format.js';
+import { say } from '../words/say.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const WIDTH = 310;
@@ -32,7 +33,8 @@ export function drawChart(svg, dots, current, choose) {
   }
   svg.append(shape('polyline', { points: dots.map(({ count, error }) => `${x(count)},${y(error)}`).join(' '), class: 'line' }));
   for (const { count, error } of dots) {
-    const words = `${format.count(count)} points: ${format.percent(error)} of the diagonal${count === current ? ', shown now' : ''}`;
+    const values = { count: format.count(count), error: format.percent(error) };
+    const words = count === current ? say('{count} points: {error} of the diagonal, shown now', values) : say('{count} points: {error} of the diagonal', values);
     const dot = shape('g', { class: 'dot', role: 'button', tabindex: 0, 'aria-label': words, 'aria-pressed': count === current });
     dot.append(shape('circle', { cx: x(count), cy: y(error), r: 22, class: 'target' }));
     dot.append(shape('circle', { cx: x(count), cy: y(error), r: 5 }));

@@ -1,6 +1,7 @@
 import { announce, byId } from '../dom.js';
 import { drawChart } from './chart.js';
 import * as format from '../results/format.js';
+import { say } from '../words/say.js';
 
 /**
  * @import { Outcome, Session } from '../session/session.js'
@@ -60,18 +61,18 @@ export class Comparison {
       .filter((count) => count >= FEWEST && this.#dots.every((dot) => Math.abs(Math.log(dot.count / count)) > 0.4));
     this.#draw();
     let left = wanted.length;
-    const say = () => (this.#note.textContent = left
-      ? `Making ${left} more ${left === 1 ? 'mesh' : 'meshes'} to compare…`
-      : 'Each dot is a mesh made from that many points. Choose one to see it.');
-    say();
+    const note = () => (this.#note.textContent = left
+      ? say('Meshes to compare that are still being made: {count}', { count: left })
+      : say('Each dot is a mesh made from that many points. Choose one to see it.'));
+    note();
     try {
       const all = await this.#session.compare(wanted, (count, { rms }) => {
         if (scan !== this.#scan) return;
         left--;
         this.#add({ count, error: rms });
-        say();
+        note();
       });
-      if (all && wanted.length) announce(`${format.count(this.#dots.length)} counts can be compared`);
+      if (all && wanted.length) announce(say('{count} counts can be compared', { count: format.count(this.#dots.length) }));
     } catch (error) {
       this.#fail(error);
     }

@@ -1,6 +1,7 @@
 import { Amount } from './amount.js';
 import { byId, element } from '../dom.js';
 import { CONTROLS, PLACES, TARGETS, defaultOf } from './settings.js';
+import { say } from '../words/say.js';
 
 /**
  * @import { Settings, Target, TargetKind } from './settings.js'
@@ -58,12 +59,13 @@ export class Controls {
   show(/** @type {Target} */ target, /** @type {number} */ points) {
     this.#points = points;
     this.#target = target;
-    const { label, ...range } = TARGETS[target.kind];
+    const { label: named, ...range } = TARGETS[target.kind];
+    const label = say(named);
     const high = target.kind === 'count' ? Math.max(range.low + 1, points) : range.high;
     this.#offerKinds();
-    for (const id of ['keep-slider', 'keep-field']) byId(id, HTMLInputElement).ariaLabel = `${label}${range.unit && ', in per cent'}`;
+    for (const id of ['keep-slider', 'keep-field']) byId(id, HTMLInputElement).ariaLabel = range.unit ? say('{name}, in per cent', { name: label }) : label;
     byId('keep-unit', HTMLElement).textContent = range.unit;
-    byId('keep-title', HTMLElement).textContent = COUNTED.has(target.kind) ? 'Points to keep' : label;
+    byId('keep-title', HTMLElement).textContent = COUNTED.has(target.kind) ? say('Points to keep') : label;
     this.#keep.set({ ...range, high }, target.value);
     this.#say(target);
     this.#refresh();
@@ -85,7 +87,7 @@ export class Controls {
   #offerKinds() {
     const all = /** @type {TargetKind[]} */ (Object.keys(TARGETS));
     const offered = all.filter((kind) => !EXPERT.has(kind) || this.#expert.open || kind === this.#target.kind);
-    this.#kind.replaceChildren(...offered.map((kind) => new Option(TARGETS[kind].label, kind)));
+    this.#kind.replaceChildren(...offered.map((kind) => new Option(say(TARGETS[kind].label), kind)));
     this.#kind.value = this.#target.kind;
   }
 
@@ -105,8 +107,8 @@ export class Controls {
   #make(/** @type {string} */ key) {
     const control = CONTROLS[key];
     const id = `option-${key}`;
-    const hint = element('p', { className: 'hint', id: `${id}-hint`, textContent: control.hint });
-    const label = element('label', { htmlFor: id, textContent: control.label });
+    const hint = element('p', { className: 'hint', id: `${id}-hint`, textContent: say(control.hint) });
+    const label = element('label', { htmlFor: id, textContent: say(control.label) });
     const error = element('p', { className: 'invalid', id: `${id}-error`, role: 'alert', hidden: true });
     const input = this.#input(key, id, error);
     input.querySelector(`#${id}`)?.setAttribute('aria-describedby', hint.id);
@@ -126,7 +128,7 @@ export class Controls {
     };
     if (control.kind === 'choice') {
       const select = element('select', { id });
-      for (const [name, words] of Object.entries(control.choices)) select.append(new Option(words, name));
+      for (const [name, words] of Object.entries(control.choices)) select.append(new Option(say(words), name));
       select.addEventListener('change', () => take(select.value));
       this.#refreshers.push(() => (select.value = String(settings.get(key))));
       box.append(select);
@@ -136,7 +138,7 @@ export class Controls {
       this.#refreshers.push(() => (check.checked = Boolean(settings.get(key))));
       box.append(check);
     } else {
-      const slider = element('input', { type: 'range', ariaLabel: `${control.label}, slider` });
+      const slider = element('input', { type: 'range', ariaLabel: say('{name}, slider', { name: say(control.label) }) });
       const field = element('input', { id, type: 'number', step: 'any', inputMode: 'decimal' });
       const unit = element('span', { textContent: control.unit });
       const amount = new Amount(slider, field, error, () => {}, take);

@@ -1,4 +1,5 @@
 import { announce, byId, element } from '../dom.js';
+import { say } from '../words/say.js';
 
 /** @import { Axis } from 'pointweave/viewer' */
 /** @import { Unit } from 'pointweave' */
@@ -6,7 +7,7 @@ import { announce, byId, element } from '../dom.js';
 /** What is kept with a scan: the axis that is up or the direction, and the unit. @typedef {{ up?: Axis | [number, number, number], unit?: Unit }} Stand */
 
 const SIDES = /** @type {Record<Axis, string>} */ ({ z: 'Z', y: 'Y', x: 'X', '-z': '−Z', '-y': '−Y', '-x': '−X' });
-const UNITS = { mm: 'millimetres', cm: 'centimetres', m: 'metres', in: 'inches', ft: 'feet', 'us-ft': 'US survey feet', deg: 'degrees' };
+export const UNITS = { mm: 'millimetres', cm: 'centimetres', m: 'metres', in: 'inches', ft: 'feet', 'us-ft': 'US survey feet', deg: 'degrees' };
 /** Of a direction between the axes. */
 const PICKED = 'picked';
 /** Those that a person chooses from; a file may say others. */
@@ -30,7 +31,7 @@ export class Standing {
     this.#pick.addEventListener('click', () => {
       if (this.picking) return this.stop();
       this.#pick.ariaPressed = 'true';
-      announce('Click the floor, or the side that is up, in the picture');
+      announce(say('Click the floor, or the side that is up, in the picture'));
       ask((_, normal) => {
         this.stop();
         changed({ up: normal });
@@ -70,11 +71,11 @@ export class Standing {
     this.#pick.hidden = !mesh;
     if (!mesh) this.stop();
     this.#side.querySelector(`[value=${PICKED}]`)?.remove();
-    if (picked) this.#side.append(element('option', { value: PICKED, textContent: 'the side that was picked' }));
-    this.#words.textContent = `${picked ? 'The picked side' : SIDES[up]} is up, lengths in ${unit ? UNITS[unit] : 'file units'}`;
+    if (picked) this.#side.append(element('option', { value: PICKED, textContent: say('the side that was picked') }));
+    this.#words.textContent = say('{side} is up, lengths in {unit}', { side: picked ? say('The picked side') : SIDES[up], unit: say(unit ? UNITS[unit] : 'file units') });
     const known = unit && !CHOICES.some((name) => name === unit) ? [unit] : [];
-    const options = [...CHOICES, ...known].map((value) => element('option', { value, textContent: UNITS[value] }));
-    this.#unit.replaceChildren(...(unit ? [] : [element('option', { value: '', textContent: 'not known', disabled: true })]), ...options);
+    const options = [...CHOICES, ...known].map((value) => element('option', { value, textContent: say(UNITS[value]) }));
+    this.#unit.replaceChildren(...(unit ? [] : [element('option', { value: '', textContent: say('not known'), disabled: true })]), ...options);
     this.#side.value = picked ? PICKED : up;
     this.#unit.value = unit ?? '';
   }

@@ -25,8 +25,8 @@ export class Steps {
   get keys() {
     const [undo, redo] = [() => this.#shown.undo(), () => this.#shown.redo()];
     return [
-      { key: 'z', ctrl: true, shown: 'Ctrl+Z', does: 'Undo', act: undo },
-      { key: 'shift z', ctrl: true, also: [], shown: 'Ctrl+Shift+Z', does: 'Redo', act: redo },
+      { key: 'z', ctrl: true, shown: 'Ctrl+Z', does: say('Undo'), act: undo },
+      { key: 'shift z', ctrl: true, also: [], shown: 'Ctrl+Shift+Z', does: say('Redo'), act: redo },
     ];
   }
 }

@@ -3,6 +3,8 @@ import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { Legend } from './legend.js';
+import { tellWhenLost } from './lost.js';
+import { NAMES, SIDES } from './names.js';
 import { WORDS } from './paint-words.js';
 import { Painting } from './painting.js';
 import { PieceChoice } from './piece.js';
@@ -29,7 +31,6 @@ const UPS = { y: 'Y', z: 'Z', '-y': '−Y', '-z': '−Z', x: 'X', '-x': '−X' }
 const READY = new Set(['natural', 'plain']);
 
 const VIEWS = /** @type {const} */ (['points', 'reduced', 'mesh', 'compare']);
-const NAMES = { points: 'Scan', reduced: 'Reduced points', mesh: 'Mesh', compare: 'Comparison' };
 
 /** How the scan and what was made of it are looked at: which view, in which colours, from where. */
 export class Look {
@@ -81,7 +82,10 @@ export class Look {
     const viewer = this.#viewer;
     byId('no-webgl', HTMLElement).hidden = Boolean(viewer);
     this.#paints.append(...PAINTS.map((name) => paintChoice(name, WORDS.names[name])));
-    if (viewer) followTheme((theme) => (viewer.colors = theme));
+    if (viewer) {
+      followTheme((theme) => (viewer.colors = theme));
+      tellWhenLost(viewer);
+    }
     byId('fit', HTMLButtonElement).addEventListener('click', () => viewer?.fit());
     byId('up', HTMLButtonElement).addEventListener('click', () => this.#turnUp());
     this.#views.addEventListener('change', (event) => this.#choose(/** @type {Choice} */ (valueOf(event))));
@@ -166,20 +170,20 @@ export class Look {
     const viewer = this.#viewer;
     const from = (/** @type {Side} */ side) => () => this.#lookFrom(side);
     return [
-      ...VIEWS.map((view, i) => ({ key: String(i + 1), does: NAMES[view], act: () => this.#chooseByKey(view) })),
-      { key: 'c', does: 'Next colours', act: () => this.#nextPaint() },
-      { key: 'e', does: 'Edges of the triangles', act: () => this.#edges.click() },
-      { key: 'b', does: 'Boxes of the octree', act: () => this.#boxes.click() },
-      { key: 'f', does: 'Fit the view', act: () => viewer?.fit() },
-      { key: 'u', does: 'Turn another side up', act: () => this.#turnUp() },
-      { key: 'v', shown: 'V R T', does: 'Look from the front, the right, the top', act: from('front') },
+      ...VIEWS.map((view, i) => ({ key: String(i + 1), does: say(NAMES[view]), act: () => this.#chooseByKey(view) })),
+      { key: 'c', does: say('Next colours'), act: () => this.#nextPaint() },
+      { key: 'e', does: say('Edges of the triangles'), act: () => this.#edges.click() },
+      { key: 'b', does: say('Boxes of the octree'), act: () => this.#boxes.click() },
+      { key: 'f', does: say('Fit the view'), act: () => viewer?.fit() },
+      { key: 'u', does: say('Turn another side up'), act: () => this.#turnUp() },
+      { key: 'v', shown: 'V R T', does: say('Look from the front, the right, the top'), act: from('front') },
       { key: 'r', act: from('right') },
       { key: 't', act: from('top') },
-      { key: 'p', does: 'Perspective or parallel lines', act: () => this.#parallel.click() },
-      { key: '+', also: ['='], shown: '+ −', does: 'Nearer, farther', act: () => viewer?.zoom(1 / 1.2) },
+      { key: 'p', does: say('Perspective or parallel lines'), act: () => this.#parallel.click() },
+      { key: '+', also: ['='], shown: '+ −', does: say('Nearer, farther'), act: () => viewer?.zoom(1 / 1.2) },
       { key: '-', act: () => viewer?.zoom(1.2) },
-      { key: 'Arrows', shown: '← → ↑ ↓', does: 'Turn, while the picture has the focus' },
-      { key: 'Home', does: 'The first look, while the picture has the focus' },
+      { key: 'Arrows', shown: '← → ↑ ↓', does: say('Turn, while the picture has the focus') },
+      { key: 'Home', does: say('The first look, while the picture has the focus') },
     ];
   }
 
@@ -200,7 +204,7 @@ export class Look {
   #chooseByKey(/** @type {Choice} */ view) {
     if (radio('view', view).disabled) return;
     this.#choose(view);
-    announce(`${NAMES[view]} is shown`);
+    announce(say('{view} is shown', { view: say(NAMES[view]) }));
   }
 
   #show(/** @type {Choice} */ view) {
@@ -261,7 +265,7 @@ export class Look {
     const names = PAINTS.filter((name) => canPaint(name, subject));
     const next = names[(names.indexOf(this.#paint) + 1) % names.length];
     this.#choosePaint(next);
-    announce(`Colours: ${WORDS.names[next]}`);
+    announce(say('Colours: {name}', { name: WORDS.names[next] }));
   }
 
   /** What can be chosen now; every layer is to be coloured anew. */
@@ -309,7 +313,7 @@ export class Look {
   #lookFrom(/** @type {Side} */ side) {
     this.#viewer?.lookFrom(side);
     this.#parallel.checked = true;
-    announce(`Seen from the ${side}`);
+    announce(say('Seen from this side: {side}', { side: say(SIDES[side]) }));
   }
 
   #turnUp() {
@@ -318,7 +322,7 @@ export class Look {
     const next = axes[(axes.indexOf(this.#viewer.upright) + 1) % axes.length];
     this.#viewer.up = next;
     this.#turned();
-    announce(`${UPS[next]} is up`);
+    announce(say('{side} is up', { side: UPS[next] }));
   }
 
   /** Which side is up; without a picture, as of most objects. */

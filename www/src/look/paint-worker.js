@@ -1,7 +1,7 @@
 /**
  * Makes colours that cost a pass over all points, in a thread of its own. Arrays come in first, each once: `{ id, array }`. Then
  * `{ job, name, layer, subject, live }`, where `{ id }` stands for an array; those that are not `live` are forgotten. What goes out is
- * `{ job, colors, legend, texts }`: a legend's function cannot be sent, so its three texts are.
+ * `{}` when all is ready, and `{ job, colors, legend, texts }`: a legend's function cannot be sent, so its three texts are.
  */
 import { paintOf } from 'pointweave/viewer';
 import { WORDS } from './paint-words.js';
@@ -30,3 +30,5 @@ function filled(value) {
   if ('arrayId' in value) return arrays.get(value.arrayId);
   return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, filled(part)]));
 }
+
+postMessage({});

@@ -10,6 +10,8 @@ const UNUSED = new Set(['attributes', 'cells', 'colors', 'cloud', 'report', 'vie
 export class Painting {
   /** @type {Worker | null} */
   #worker = null;
+  /** Its program is there: what is sent before might be lost. @type {Promise<unknown>} */
+  #ready = Promise.resolve();
   /** Arrays that the worker has. @type {Map<Numbers, number>} */
   #sent = new Map();
   #last = 0;
@@ -43,6 +45,7 @@ export class Painting {
   /** @param {PaintName} name @param {'points' | 'reduced' | 'mesh'} layer @param {Subject} subject @returns {Promise<Paint>} */
   async #paint(name, layer, subject) {
     const worker = (this.#worker ??= this.#start());
+    await this.#ready;
     /** @type {Map<Numbers, number>} */
     const live = new Map();
     const { cloud, ...rest } = subject;
@@ -67,6 +70,7 @@ export class Painting {
 
   #start() {
     const worker = new Worker(new URL('./paint-worker.js', import.meta.url), { type: 'module' });
+    this.#ready = new Promise((ready) => worker.addEventListener('message', ready, { once: true }));
     worker.addEventListener('message', ({ data }) => {
       this.#waiting.get(data.job)?.(data);
       this.#waiting.delete(data.job);

@@ -1,4 +1,5 @@
 import { announce } from '../dom.js';
+import { say } from '../words/say.js';
 
 /** A pointer that moves farther than this, in CSS pixels, turns the picture and chooses nothing. */
 const STILL = 4;
@@ -25,7 +26,7 @@ export class PieceChoice {
     const choose = (/** @type {number} */ x, /** @type {number} */ y) => {
       const found = pick(x, y);
       if (found?.layer === 'mesh') this.#chosen?.(found.triangle, found.normal);
-      else announce('There is no mesh at this place');
+      else announce(say('There is no mesh at this place'));
     };
     canvas.addEventListener('pointerdown', ({ clientX, clientY }) => (this.#down = { x: clientX, y: clientY }));
     canvas.addEventListener('click', ({ clientX, clientY }) => {

@@ -36,6 +36,11 @@ export const MESSAGES = {
     text: 'Something was handed over that is no scan.',
     advice: DEFECT,
   },
+  detached: {
+    title: 'This scan was handed on already',
+    text: 'Its points are no longer here: another part of the program took them.',
+    advice: 'Open the file again.',
+  },
   'bad-option': {
     title: 'One of the settings is not possible',
     text: 'A value is out of the range that the engine takes.',

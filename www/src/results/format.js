@@ -1,12 +1,16 @@
 /** Numbers as people read them. */
+import { say, words } from '../words/say.js';
 
-const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
-const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
-const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumSignificantDigits: 2 });
+const { language } = words;
+const whole = new Intl.NumberFormat(language, { maximumFractionDigits: 0 });
+const digits = new Intl.NumberFormat(language, { maximumSignificantDigits: 3 });
+const two = new Intl.NumberFormat(language, { maximumSignificantDigits: 2 });
+const tenths = new Intl.NumberFormat(language, { minimumFractionDigits: 1, maximumFractionDigits: 1 });
+const compact = new Intl.NumberFormat(language, { notation: 'compact', maximumSignificantDigits: 2 });
 
 export const count = (/** @type {number} */ n) => whole.format(n);
 
-export const points = (/** @type {number} */ n) => `${count(n)} ${n === 1 ? 'point' : 'points'}`;
+export const points = (/** @type {number} */ n) => (n === 1 ? say('1 point') : say('{count} points', { count: count(n) }));
 
 /** As on an axis: 30K, 1.5M. */
 export const short = (/** @type {number} */ n) => compact.format(n);
@@ -28,12 +32,12 @@ export const times = (/** @type {number} */ factor) => `${digits.format(factor)}
 
 /** A fraction as a percentage with two digits. */
 export function percent(/** @type {number} */ fraction) {
-  return `${new Intl.NumberFormat('en', { maximumSignificantDigits: 2 }).format(100 * fraction)} %`;
+  return `${two.format(100 * fraction)} %`;
 }
 
 export function duration(/** @type {number} */ ms) {
   if (ms < 1000) return `${whole.format(ms)} ms`;
-  return ms < 60_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.floor(ms / 60_000)} min ${Math.round((ms % 60_000) / 1000)} s`;
+  return ms < 60_000 ? `${tenths.format(ms / 1000)} s` : `${Math.floor(ms / 60_000)} min ${Math.round((ms % 60_000) / 1000)} s`;
 }
 
 /** A volume in cubic millimetres, in the unit that suits its size. */

@@ -29,9 +29,9 @@ export class MessageCard {
   /** @param {string} code @param {string} detail @param {{ standIn?: boolean }} [how] */
   show(code, detail, { standIn = false } = {}) {
     const { title, text, advice } = MESSAGES[code] ?? MESSAGES.internal;
-    byId('message-title', HTMLElement).textContent = title;
-    byId('message-text', HTMLElement).textContent = text;
-    byId('message-advice', HTMLElement).textContent = standIn ? `${advice} ${say('A sample is shown instead.')}` : advice;
+    byId('message-title', HTMLElement).textContent = say(title);
+    byId('message-text', HTMLElement).textContent = say(text);
+    byId('message-advice', HTMLElement).textContent = standIn ? `${say(advice)} ${say('A sample is shown instead.')}` : say(advice);
     byId('message-detail', HTMLElement).textContent = detail;
     this.#box.hidden = false;
   }

@@ -2,6 +2,7 @@ import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
 import * as format from './format.js';
 import { stageWords } from './stages.js';
+import { say } from '../words/say.js';
 
 /** @import { Outcome, Scan } from '../session/session.js' */
 
@@ -45,7 +46,7 @@ export class Numbers {
   /** What lengths are said in; those that are shown are said anew. */
   set unit(/** @type {import('pointweave').Unit | undefined} */ unit) {
     this.#unit = unit;
-    byId('error-unit', HTMLElement).textContent = unit ? 'length' : 'file units';
+    byId('error-unit', HTMLElement).textContent = say(unit ? 'length' : 'file units');
     for (const name of ['errorMean', 'errorRms', 'errorMax']) {
       const value = this.#box.querySelector(`data[data-number="${name}"]`)?.getAttribute('value');
       if (value !== null && value !== undefined) this.#set(name, Number(value), (length) => this.#length(length));
@@ -119,7 +120,7 @@ function sentence(/** @type {string} */ reason) {
 }
 
 function engineWords(/** @type {{ build: string, threads: number }} */ { build, threads }) {
-  return build === 'threads' ? `${threads} threads` : 'one thread';
+  return build === 'threads' ? say('{count} threads', { count: threads }) : say('one thread');
 }
 
 function put(/** @type {HTMLDataElement} */ cell, /** @type {number | undefined} */ value, /** @type {(n: number) => string} */ words) {

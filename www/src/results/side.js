@@ -1,5 +1,6 @@
 import { sideInWords } from 'pointweave';
 import { announce, byId } from '../dom.js';
+import { say } from '../words/say.js';
 
 /** @import { SurfaceMesh } from 'pointweave' */
 
@@ -21,7 +22,7 @@ export class SideCard {
     this.#piece.addEventListener('click', () => {
       if (this.choosing) return this.stop();
       this.#piece.ariaPressed = 'true';
-      announce('Choose the piece: click it in the picture');
+      announce(say('Choose the piece: click it in the picture'));
       ask((triangle) => flip(triangle));
     });
   }
@@ -42,8 +43,8 @@ export class SideCard {
     this.stop();
     this.#box.hidden = !mesh;
     if (!mesh) return;
-    const [first, ...rest] = sideInWords(mesh.report);
-    this.#words.textContent = `${first.toUpperCase()}${rest.join('')}${all ? '; all of it was turned by hand' : ''}${piece ? '; a piece was turned by hand' : ''}.`;
+    const [first, ...rest] = sideInWords(mesh.report, say);
+    this.#words.textContent = `${first.toUpperCase()}${rest.join('')}${all ? `; ${say('all of it was turned by hand')}` : ''}${piece ? `; ${say('a piece was turned by hand')}` : ''}.`;
     this.#piece.hidden = mesh.report.components < 2;
   }
 }

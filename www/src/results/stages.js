@@ -1,5 +1,7 @@
+import { say } from '../words/say.js';
+
 /** The engine's stages, in the words of the page. */
-const WORDS = /** @type {Record<string, string>} */ ({
+export const STAGES = /** @type {Record<string, string>} */ ({
   download: 'Fetching the scan',
   read: 'Reading the file',
   octree: 'Sorting the points',
@@ -14,4 +16,4 @@ const WORDS = /** @type {Record<string, string>} */ ({
   report: 'Measuring the result',
 });
 
-export const stageWords = (/** @type {string} */ stage) => WORDS[stage] ?? stage;
+export const stageWords = (/** @type {string} */ stage) => say(STAGES[stage] ?? stage);

@@ -1,9 +1,10 @@
 import { byId, element } from '../dom.js';
+import { say } from '../words/say.js';
 
 /** @import { FileCloud } from 'pointweave' */
 
 /** What a column can hold, and how it is called on the page. */
-const ROLES = [
+export const ROLES = [
   ['x', 'x'], ['y', 'y'], ['z', 'z'],
   ['red', 'red'], ['green', 'green'], ['blue', 'blue'], ['rgb', 'colour in one value'],
   ['nx', 'normal x'], ['ny', 'normal y'], ['nz', 'normal z'],
@@ -63,17 +64,17 @@ export class ColumnChooser {
     const columns = this.#columns;
     const missing = AXES.filter((axis) => !columns.includes(axis));
     const twice = columns.find((name, i) => name !== '-' && columns.indexOf(name) !== i);
-    this.#say.textContent = missing.length > 0 ? `No column is ${missing.join(', ')} yet.` : twice ? `Two columns are ${twice}.` : '';
+    this.#say.textContent = missing.length > 0 ? say('No column is {axes} yet.', { axes: missing.join(', ') }) : twice ? say('Two columns are {role}.', { role: say(twice) }) : '';
     this.#read.disabled = missing.length > 0 || twice !== undefined;
   }
 }
 
 /** @param {number} i @param {string} taken what the column was taken for @param {string} [name] what the file calls it */
 function chooser(i, taken, name) {
-  const select = element('select', { ariaLabel: `Column ${i + 1} holds` });
+  const select = element('select', { ariaLabel: say('Column {number} holds', { number: i + 1 }) });
   const own = ROLES.some(([role]) => role === taken) ? name : taken;
   const free = own && !ROLES.some(([role]) => role === own) ? [[own, own]] : [];
-  select.append(...[...ROLES, ...free].map(([value, text]) => element('option', { value, textContent: text, selected: value === taken })));
+  select.append(...[...ROLES, ...free].map(([value, text]) => element('option', { value, textContent: say(text), selected: value === taken })));
   return select;
 }
 

@@ -18,7 +18,7 @@ import { say } from '../words/say.js';
  */
 
 /** The first that the package writes is the one on the button. @type {Record<What, Record<string, Kind>>} */
-const FORMATS = {
+export const FORMATS = {
   mesh: {
     'glb-small': { label: 'GLB', use: 'small: for the web and phones', options: { format: 'glb', quantize: true, meshopt: compressAside } },
     glb: { label: 'GLB', use: 'plain: for every program', options: { format: 'glb' } },
@@ -36,7 +36,7 @@ const FORMATS = {
     pcd: { label: 'PCD', use: 'for robots', options: { format: 'pcd' } },
   },
 };
-const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };
+export const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };
 
 /** Saves what was made: one button for most people, and every format with its size. */
 export class Saving {
@@ -85,7 +85,7 @@ export class Saving {
     this.#showPrinting(outcome);
     if (!outcome) return;
     const what = outcome.mesh ? 'mesh' : 'reduced';
-    this.#what.textContent = outcome.mesh ? 'Save the mesh' : 'Save the points';
+    this.#what.textContent = outcome.mesh ? say('Save the mesh') : say('Save the points');
     for (const name of Object.keys(FORMATS[what])) {
       const file = await this.#file(what, name);
       if (outcome !== this.#outcome) return;
@@ -123,7 +123,7 @@ export class Saving {
     if (!outcome || this.#list.childElementCount) return;
     for (const what of /** @type {What[]} */ (outcome.mesh ? ['mesh', 'reduced'] : ['reduced'])) {
       const rows = element('ul');
-      this.#list.append(element('h3', { textContent: NAMES[what] }), rows);
+      this.#list.append(element('h3', { textContent: say(NAMES[what]) }), rows);
       for (const name of Object.keys(FORMATS[what])) {
         const file = await this.#file(what, name);
         if (outcome !== this.#outcome) return;
@@ -137,9 +137,9 @@ export class Saving {
     const row = element('li');
     const button = element('button', { type: 'button', className: 'format', id: `save-${what}-${name}` });
     button.append(
-      element('span', { className: 'visually-hidden', textContent: `Save the ${NAMES[what].toLowerCase()} as ` }),
+      element('span', { className: 'visually-hidden', textContent: `${say(what === 'mesh' ? 'Save the mesh as' : 'Save the points as')} ` }),
       element('strong', { textContent: label }),
-      element('span', { textContent: (this.#prints && prints) || use }),
+      element('span', { textContent: say((this.#prints && prints) || use) }),
       element('data', { textContent: format.bytes(size), value: String(size) }),
     );
     button.addEventListener('click', () => this.#save(what, name));
@@ -169,6 +169,6 @@ export class Saving {
     const file = await this.#file(what, name);
     if (!file) return;
     saveFile(file, title);
-    announce(`${title} saved`);
+    announce(say('{name} saved', { name: title }));
   }
 }

@@ -1,10 +1,11 @@
-import { createEngine, flip, read, reconstruct, reduce, sample, write, splitOrigin } from 'pointweave';
+import { autoCount, createEngine, flip, read, reconstruct, reduce, sample, splitOrigin, write } from 'pointweave';
 import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 import { Emitter } from '../state/emitter.js';
+import { say } from '../words/say.js';
 
 /**
  * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
@@ -21,13 +22,6 @@ import { Emitter } from '../state/emitter.js';
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
-
-/** The least and the most points that the page keeps of its own accord: enough for a shape, few enough to wait for. */
-const ENOUGH = 2_000;
-const AMPLE = 60_000;
-/** The same for a phone, whose processor and memory are smaller. */
-const AMPLE_ON_PHONE = 20_000;
-const PHONE = '(pointer: coarse) and (max-width: 900px)';
 
 /** Stages whose settings have not changed are not run again. */
 const REMEMBERED = { keep: true };
@@ -67,7 +61,7 @@ export class Session extends Emitter {
   /** Generates one of the package's simulated scans and makes its mesh. */
   openSample(/** @type {SampleName} */ model) {
     const { title, count } = SAMPLES[model];
-    return this.#open({ title, file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
+    return this.#open({ title: say(title), file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
   }
 
   /**
@@ -114,7 +108,7 @@ export class Session extends Emitter {
 
   /** What is kept: what the person has chosen, or what suits the scan. @returns {Target} */
   get target() {
-    return this.settings.target ?? { kind: 'ratio', value: this.scan ? startingShare(this.scan.count) : TARGETS.ratio.start };
+    return this.settings.target ?? { kind: 'ratio', value: this.scan ? autoCount(this.scan.count) / this.scan.count : TARGETS.ratio.start };
   }
 
   /** Works again if the settings ask for something else than the last job made or makes. */
@@ -230,11 +224,15 @@ export class Session extends Emitter {
   async #open(source, load) {
     const job = this.#begin('reading');
     try {
+      // One pass over the points a task.
       const cloud = splitOrigin(await load(job.signal));
+      await nextTask();
+      const frame = frameOf(cloud);
+      await nextTask();
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = { ...source, cloud, count, frame: frameOf(cloud), own: { up: cloud.up, unit: cloud.unit } };
+      this.scan = { ...source, cloud, count, frame, own: { up: cloud.up, unit: cloud.unit } };
       this.outcome = this.#whole = null;
       this.emit('opened', this.scan);
     } catch (error) {
@@ -297,14 +295,12 @@ function withMesh(outcome, mesh) {
   return { ...outcome, mesh, reduced: mesh.cloud };
 }
 
+/** Lets the browser draw and answer in between. */
+function nextTask() {
+  return new Promise((next) => setTimeout(next));
+}
+
 /** A file's name without its ending. */
 function stem(/** @type {string} */ name) {
   return name.replace(/\.[^.]*$/, '') || 'scan';
-}
-
-/** The share to keep of a new scan, until the person has chosen one. */
-function startingShare(/** @type {number} */ count) {
-  const ample = matchMedia(PHONE).matches ? AMPLE_ON_PHONE : AMPLE;
-  const kept = Math.min(ample, Math.max(ENOUGH, count * TARGETS.ratio.start));
-  return Math.min(1, kept / count);
 }

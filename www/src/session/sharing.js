@@ -1,5 +1,6 @@
 import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
+import { say } from '../words/say.js';
 
 /** @import { Outcome, Scan } from './session.js' */
 
@@ -31,8 +32,8 @@ export class Sharing {
   show(address, scan, file) {
     this.#link.value = address;
     this.#note.textContent = scan && !scan.model && !scan.src
-      ? 'The link holds your settings. The scan itself stays on this device: send it yourself.'
-      : 'Whoever opens it sees this scan with these settings.';
+      ? say('The link holds your settings. The scan itself stays on this device: send it yourself.')
+      : say('Whoever opens it sees this scan with these settings.');
     this.#file = file;
     this.#title = scan?.title ?? 'A scan';
     this.#write();
@@ -49,18 +50,10 @@ export class Sharing {
   }
 }
 
-/** A page without a bundler needs to be told where the packages are; after `npm install pointweave three` they are there. */
-const IMPORTS = `<script type="importmap">
-{ "imports": {
-  "pointweave/element": "/node_modules/pointweave/element.js",
-  "three": "/node_modules/three/build/three.module.js",
-  "three/addons/": "/node_modules/three/examples/jsm/"
-} }
-</script>
-<script type="module">import 'pointweave/element';</script>
-`;
+/** The element with all that it needs is one file of the npm package, whose folder lies beside the page. */
+const ELEMENT = '<script type="module" src="pointweave/element.min.js"></script>\n';
 
 function snippet(/** @type {string} */ file, /** @type {string} */ title, /** @type {string} */ poster) {
   const text = (/** @type {string} */ words) => words.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-  return `${IMPORTS}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model"${poster && ` poster="${text(encodeURI(poster))}"`} controls></point-weave>`;
+  return `${ELEMENT}<point-weave src="${text(encodeURI(file))}" alt="${text(title)}, a 3D model"${poster && ` poster="${text(encodeURI(poster))}"`} controls></point-weave>`;
 }

@@ -20,6 +20,23 @@ import { Emitter } from './emitter.js';
 /** What each tab remembers of its newest step, so that it knows after a reload whether there is something to redo. */
 const NEWEST = 'pointweave newest step';
 
+/** The newest step of this tab; 0 where the browser keeps nothing for a page. */
+function remembered() {
+  try {
+    return Number(sessionStorage.getItem(NEWEST) ?? 0);
+  } catch {
+    return 0;
+  }
+}
+
+function remember(/** @type {number} */ step) {
+  try {
+    sessionStorage.setItem(NEWEST, String(step));
+  } catch {
+    // Without it, redo is not offered after a reload; all else works.
+  }
+}
+
 /** @type {Value} */
 const NOTHING = { scan: null, edits: {}, settings: { target: null, values: {} }, look: { view: 'mesh', paint: 'natural' } };
 
@@ -47,7 +64,7 @@ export class Shown extends Emitter {
 
   /** What the browser still knows of this entry: after a reload, or when the tab comes back. @returns {Value | null} */
   recall() {
-    this.#newest = Number(sessionStorage.getItem(NEWEST) ?? 0);
+    this.#newest = remembered();
     this.#take(history.state);
     return history.state?.value ?? null;
   }
@@ -64,7 +81,7 @@ export class Shown extends Emitter {
     } else {
       history.replaceState({ step: this.#step, value }, '', this.#addressOf(value));
     }
-    sessionStorage.setItem(NEWEST, String(this.#newest));
+    remember(this.#newest);
     this.emit('changed', value);
   }
 
