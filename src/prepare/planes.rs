@@ -121,10 +121,13 @@ impl Planes {
         // Without noise a plane is as thick as single precision makes it.
         let found = search::planes(&voters, noise.max(1e-6), min_share, seed);
         progress.update(Stage::Prepare, 0.4)?;
+        let on_planes: Vec<bool> = (0..voters.len())
+            .map(|k| found.iter().any(|plane| plane.own[k]))
+            .collect();
         let seen = |found: &Found| seen_from_front(tree, &voters, found, known.eye);
         let mut all: Vec<Plane> = found
             .iter()
-            .map(|plane| judged(&voters, plane, seen(plane)))
+            .map(|plane| judged(&voters, plane, &on_planes, seen(plane)))
             .collect();
         progress.update(Stage::Prepare, 0.5)?;
         let mut of = assigned(tree, features, &all);
@@ -202,7 +205,12 @@ fn seen_from_front(
 }
 
 /// What a plane is to the rest of the scan.
-fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Plane {
+fn judged(
+    voters: &[Voter],
+    found: &Found,
+    on_planes: &[bool],
+    seen_from_front: Option<bool>,
+) -> Plane {
     let own = |(voter, own): (&Voter, &bool)| own.then_some(voter.at);
     let points: Vec<Vec3> = voters.iter().zip(&found.own).filter_map(own).collect();
     let sheet = Sheet::of(&points, found.normal);
@@ -226,7 +234,10 @@ fn judged(voters: &[Voter], found: &Found, seen_from_front: Option<bool>) -> Pla
     let near = |&(_, height): &(Vec3, f64)| {
         (thick..TOUCHES * sheet.cell + thick).contains(&(front * height))
     };
-    let touching = rest()
+    // What lies on another plane touches this one where the two meet.
+    let things = voters.iter().zip(on_planes).filter(|&(_, on)| !on);
+    let things = things.map(|(voter, _)| (voter.at, sheet.height(voter.at)));
+    let touching = things
         .filter(near)
         .filter(|&(p, _)| sheet.is_around(p))
         .count() as f64

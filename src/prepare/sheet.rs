@@ -52,9 +52,9 @@ impl Sheet {
         let side = hi - lo;
         let even = (side.x * side.y / points.len() as f64).sqrt();
         let cell = (CELL * even).max(side.max_element() / CELLS).max(1e-9);
-        // One cell more on every side: the outside goes around.
-        let low = lo - cell;
-        let size = [0, 1].map(|a| (side[a] / cell) as usize + 3);
+        // More than a cell on every side, however it is rounded: the outside goes around.
+        let low = lo - 1.5 * cell;
+        let size = [0, 1].map(|a| (side[a] / cell) as usize + 4);
         let mut sheet = Sheet {
             middle,
             axes,
