@@ -344,6 +344,7 @@ export default {
   'Placing them on the surface': 'Punkte werden auf die Fläche gesetzt',
   'Dividing the surface into patches': 'Fläche wird in Stücke geteilt',
   'Fitting the patches': 'Stücke werden angepasst',
+  'Cutting the object out': 'Der Gegenstand wird ausgeschnitten',
   'Finding out what is inside': 'Innen und außen werden bestimmt',
   'Weaving the triangles': 'Dreiecke werden gewebt',
   'Measuring the result': 'Ergebnis wird gemessen',

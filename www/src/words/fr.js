@@ -344,6 +344,7 @@ export default {
   'Placing them on the surface': 'Placement sur la surface',
   'Dividing the surface into patches': 'Division de la surface en morceaux',
   'Fitting the patches': 'Ajustement des morceaux',
+  'Cutting the object out': 'Découpe de l’objet',
   'Finding out what is inside': 'Recherche de l’intérieur',
   'Weaving the triangles': 'Tissage des triangles',
   'Measuring the result': 'Mesure du résultat',
