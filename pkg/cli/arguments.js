@@ -100,7 +100,7 @@ function explain({ code, message }, command, names) {
 /** Which commands have it. @param {string} flag its name or its letter */
 function elsewhere(flag) {
   const having = COMMANDS.filter((name) => Object.entries(optionsOf(name)).some(([long, { short }]) => flag === long || flag === short));
-  return having.length > 0 ? `, which is for ${having.join(' and ')}` : '';
+  return having.length > 0 ? `, which is for ${having.join(', ').replace(/, (?!.*, )/, ' and ')}` : '';
 }
 
 /** @param {string} word @param {string[]} names */

@@ -231,7 +231,7 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', 'a/scan.xyz', '--out-dir', 'b'], /'scan\.ply' and 'a\/scan\.xyz' would both become 'b\/scan\.ply'/],
     [['reduce', '-', '--out-dir', 'b'], /standard input has no name/],
     [['inspect', '-', '-'], /standard input can be read once/],
-    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce and reconstruct$/],
+    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce, reconstruct, prepare and merge$/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--no-reduce', '--ratio', '0.5'], /--no-reduce leaves nothing/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--sharp', '--no-sharp'], /exclude each other/],
   ];

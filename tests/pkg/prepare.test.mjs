@@ -151,7 +151,8 @@ test('the command line prepares, merges, and takes a recipe before a reduction',
   const { stderr } = await pointweave('prepare', 'scan.ply', '-o', 'object.ply', '--drop-floor', '--keep-largest');
   assert.match(stderr, /10,\d{3} → [34],\d{3} points, plane −\d,\d{3}, pieces −\d+/);
   const object = await read(await readFile(at('object.ply')));
-  assert.ok(Math.abs(object.positions.length / 3 - 4000) < 30 && object.colors && object.attributes.number);
+  // The underside, which lies in the plane of the floor, goes with it.
+  assert.ok(Math.abs(object.positions.length / 3 - 4000) < 80 && object.colors && object.attributes.number);
   const json = JSON.parse((await pointweave('reduce', 'scan.ply', '--json', '--prepare', 'recipe.json', '--ratio', '0.1')).stdout);
   assert.equal(json.inputPoints, object.positions.length / 3);
   assert.deepEqual(json.steps.map(({ step }) => step), ['plane', 'pieces']);
