@@ -94,7 +94,7 @@ test('what a person knows of a scan', { timeout: 2 * PATIENCE }, async (t) => {
     assert.match(await page.innerText('#legend'), /in mm and of the diagonal/);
     assert.doesNotMatch(await page.innerText('main, body'), /file units/);
     await page.selectOption('#stand-unit', 'cm');
-    assert.match(await page.innerText('#legend'), /in cm and of the diagonal/);
+    await page.locator('#legend', { hasText: 'in cm and of the diagonal' }).waitFor();
   });
   assert.deepEqual(site.faults, []);
 });
