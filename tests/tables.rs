@@ -697,3 +697,17 @@ fn slices_and_a_long_table_give_the_same() {
     let error = read(broken.as_bytes(), Format::Xyz).expect_err("a word");
     assert_eq!((error.code(), error.index()), ("bad-file", Some(2501)));
 }
+
+#[test]
+fn names_are_looked_for_in_the_lines_next_above_the_rows() {
+    let first = |between: usize| {
+        let notes = "# nothing of the columns is said here\n".repeat(between);
+        let text = table(&format!("# z y x\n{notes}#"), |[x, y, z], _| {
+            format!("{z} {y} {x}")
+        });
+        values(&read(text.as_bytes(), Format::Xyz).unwrap())[..3].to_vec()
+    };
+    let [x, y, z] = place(0);
+    assert_eq!(first(20), [x, y, z]);
+    assert_eq!(first(100), [z, y, x]);
+}
