@@ -163,7 +163,10 @@ export class PointWeaveElement extends HTMLElement {
   /** `'auto'` (default) shows how to move it after three seconds, where it has `controls` and nobody has. */
   interactionPrompt: 'auto' | 'none';
 
-  /** Resolves with what `load` tells as soon as the view that is asked for is shown; rejects with what `error` tells. */
+  /**
+   * Resolves with what `load` tells as soon as the view that is asked for is shown; rejects with what the next `error` tells, and with an
+   * `AbortError` where `abort()` was called or the element removed.
+   */
   whenLoaded(): Promise<LoadDetail>;
   /** Sends the poster away, and begins to load. */
   dismissPoster(): void;

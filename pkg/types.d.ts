@@ -7,7 +7,7 @@
  */
 
 import type { ReconstructOptions, ReduceOptions } from './types.options.js';
-import type { PrepareOption, Prepared, Step, StepReport } from './types.prepare.js';
+import type { PrepareOption, Prepared, Step } from './types.prepare.js';
 import type { ReduceReport, SurfaceReport } from './types.reports.js';
 
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
@@ -109,7 +109,7 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   /** With `cells`, six numbers a sub-domain: the lowest x y z of its input points, and the highest. */
   cells?: Positions;
   /** With `prepare`: what the recipe did. `nearest` and `assignment` are of the points that were given. */
-  prepared?: { labels: Uint8Array; steps: StepReport[] };
+  prepared?: Pick<Prepared, 'labels' | 'steps'>;
   report: ReduceReport;
 }
 
@@ -137,7 +137,7 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
     vertices: Float32Array;
   };
   /** With `prepare`: what the recipe did. */
-  prepared?: { labels: Uint8Array; steps: StepReport[] };
+  prepared?: Pick<Prepared, 'labels' | 'steps'>;
   report: SurfaceReport;
 }
 

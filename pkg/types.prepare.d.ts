@@ -70,11 +70,15 @@ export interface StepReport {
   ms: number;
 }
 
-/** A plane of a scan. */
-export interface PlaneReport {
+/** What a step tells of a part of a scan. */
+export interface PartReport {
   points: number;
   /** Of the points that the step found. */
   share: number;
+}
+
+/** A plane of a scan. */
+export interface PlaneReport extends PartReport {
   /** Middle of its points. */
   point: [number, number, number];
   /** Unit, to the side that was seen or that most of the scan is on. */
@@ -92,10 +96,7 @@ export interface PlaneReport {
 }
 
 /** A piece of a scan. */
-export interface PieceReport {
-  points: number;
-  /** Of the points that the step found. */
-  share: number;
+export interface PieceReport extends PartReport {
   /** Corners of its box. */
   min: [number, number, number];
   max: [number, number, number];

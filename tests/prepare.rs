@@ -5,34 +5,12 @@ mod staged;
 
 use pointweave::base::progress::Silent;
 use pointweave::pipeline::{Prepared, prepare};
-use pointweave::prepare::pieces::{GAP, Keep};
-use pointweave::prepare::planes::{Drop, MIN_SHARE};
+use pointweave::prepare::planes::Drop;
 use pointweave::prepare::recipe::Step;
 use pointweave::prepare::regions::Region;
 use pointweave::samples::{Model, sample};
 use pointweave::{Cloud, Error, Stage as Part};
-use staged::{Body, Scan, Stage, Staged};
-
-fn plane(drop: Drop) -> Step {
-    Step::Plane {
-        drop,
-        behind: true,
-        min_share: MIN_SHARE,
-        seed: 0,
-    }
-}
-
-fn largest() -> Step {
-    Step::Pieces {
-        keep: Keep::Largest(1),
-        gap: GAP,
-    }
-}
-
-/// Strays, then what carries, then all but the largest piece.
-fn tidy() -> Vec<Step> {
-    vec![Step::Outliers, Step::Flying, plane(Drop::All), largest()]
-}
+use staged::{Body, Scan, Stage, Staged, largest, plane, tidy};
 
 fn cloud_of(scan: &Scan) -> Cloud {
     Cloud::from_f64(&scan.positions()).unwrap()

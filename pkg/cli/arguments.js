@@ -39,6 +39,7 @@ const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
 
 /** @type {Command[]} */
 export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge'];
+const NAMES = `${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`;
 
 /**
  * @param {string[]} argv
@@ -49,7 +50,7 @@ export function parse(argv) {
   if (first === '--version' || first === '-v') return { version: true };
   if (first === '--help' || first === '-h') return {};
   if (first === 'help') return { help: COMMANDS.find((name) => name === rest[0]) };
-  if (first === undefined) throw new UsageError(`a command is needed: ${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`);
+  if (first === undefined) throw new UsageError(`a command is needed: ${NAMES}`);
   const command = COMMANDS.find((name) => name === first);
   if (!command) throw new UsageError(noCommand(first));
   const { values, positionals: inputs } = parseFlags(command, rest);
@@ -58,7 +59,7 @@ export function parse(argv) {
 
 /** @param {string} first what stands where a command should */
 function noCommand(first) {
-  if (first.startsWith('-')) return `a command comes before ${first}: reduce, reconstruct or inspect`;
+  if (first.startsWith('-')) return `a command comes before ${first}: ${NAMES}`;
   const known = hint(first, COMMANDS);
   if (known || !/[./\\]/.test(first)) return `there is no command '${first}'${known}`;
   return `'${first}' looks like a file, and a command comes before it: did you mean pointweave reconstruct ${first} -o mesh.glb?`;

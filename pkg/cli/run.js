@@ -98,7 +98,7 @@ async function perform(engine, task, job, watch) {
   }
   if (command === 'prepare' || command === 'merge') {
     const count = clouds.reduce((sum, { positions }) => sum + positions.length / 3, 0);
-    const prepared = await engine.prepare(clouds.map((each) => withSaid(each, said)), steps, watch);
+    const prepared = await engine.prepare(clouds.map((each) => withSaid(each, said)), steps, { ...watch, transfer: true });
     await save(engine, task, output, prepared.cloud, watch);
     const report = { inputPoints: count, outputPoints: prepared.kept.length, steps: told(prepared.steps) };
     return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps) };

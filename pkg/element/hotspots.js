@@ -2,6 +2,7 @@
 import { placeOf } from './camera.js';
 
 /** @import { Viewer } from '../viewer.js' */
+/** @typedef {[number, number, number]} Place */
 
 const SLOT = /^hotspot-?/;
 
@@ -10,6 +11,8 @@ export class Hotspots {
   #layer;
   /** Each slot, and what holds it. @type {Map<string, HTMLElement>} */
   #holders = new Map();
+  /** What is in them, and where it belongs. @type {{ child: HTMLElement, holder: HTMLElement, place: Place | null, normal?: Place }[]} */
+  #spots = [];
   #observer = new MutationObserver(() => this.#gather());
   /** @type {Viewer | undefined} */
   #viewer;
@@ -36,6 +39,12 @@ export class Hotspots {
       this.#holders.delete(name);
     }
     for (const name of names) if (!this.#holders.has(name)) this.#hold(name);
+    this.#spots = [];
+    for (const child of /** @type {Iterable<HTMLElement>} */ (this.#host.children)) {
+      const holder = this.#holders.get(child.slot);
+      const { position, normal } = child.dataset;
+      if (holder) this.#spots.push({ child, holder, place: placeOf(position), normal: placeOf(normal) ?? undefined });
+    }
     this.#place();
   }
 
@@ -51,16 +60,13 @@ export class Hotspots {
   }
 
   #place() {
-    if (!this.#viewer || this.#holders.size === 0) return;
+    if (!this.#viewer || this.#spots.length === 0) return;
     const shown = this.#viewer.layers.length > 0;
-    for (const child of /** @type {Iterable<HTMLElement>} */ (this.#host.children)) {
-      const holder = this.#holders.get(child.slot);
-      if (!holder) continue;
-      const { position, normal, visibilityAttribute } = child.dataset;
-      const place = placeOf(position);
+    for (const { child, holder, place, normal } of this.#spots) {
       holder.hidden = !place || !shown;
       if (!place || !shown) continue;
-      const { x, y, visible } = this.#viewer.project(place, placeOf(normal) ?? undefined);
+      const { x, y, visible } = this.#viewer.project(place, normal);
+      const { visibilityAttribute } = child.dataset;
       holder.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       holder.classList.toggle('behind', !visible);
       if (visibilityAttribute) child.toggleAttribute(`data-${visibilityAttribute}`, visible);

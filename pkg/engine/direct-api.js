@@ -36,8 +36,8 @@ function withCount(cloud, own) {
   return [cloud, counted(own, cloud)];
 }
 
-/** Calls that wait for wasm of their own. @type {Record<string, (place: Place, subject: any, options: unknown) => Promise<any>>} */
-const WAITING = { read, write, sample };
+/** Calls that wait for wasm of their own. @type {Record<string, (place: Place, ...given: [any, any, any]) => Promise<any>>} */
+const WAITING = { prepare, read, write, sample };
 
 /**
  * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadBindings'>} platform
@@ -53,10 +53,9 @@ export function makeLoad(platform) {
     ]);
     const waiting = Object.entries(WAITING).map(([call, f]) => [
       call,
-      (/** @type {any} */ subject, /** @type {any} */ options) => f({ platform, wasmUrl }, subject, options),
+      (/** @type {[any, any, any]} */ ...given) => f({ platform, wasmUrl }, ...given),
     ]);
-    const prepareHere = (/** @type {any} */ cloud, /** @type {any} */ steps, /** @type {any} */ options) => prepare({ platform, wasmUrl }, cloud, steps, options);
-    return Object.fromEntries([...calls, ...waiting, ['prepare', prepareHere]]);
+    return Object.fromEntries([...calls, ...waiting]);
   };
 }
 

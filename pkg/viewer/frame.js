@@ -6,6 +6,9 @@
 /** @import { Frame, Placed } from '../viewer.js' */
 /** @typedef {[number, number, number]} Triple */
 
+/** Of nothing. @type {Frame} */
+export const ITSELF = { center: [0, 0, 0], size: [1, 1, 1], diagonal: 1 };
+
 /** @param {Triple} low @param {Triple} high @returns {Frame} */
 export function frameBetween(low, high) {
   const size = /** @type {Triple} */ (low.map((value, axis) => Math.max(0, high[axis] - value)));

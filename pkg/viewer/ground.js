@@ -3,7 +3,7 @@
  * anew only when what stands there has changed.
  */
 import {
-  Box3, Color, DoubleSide, LinearFilter, Mesh, MeshBasicMaterial, MeshDepthMaterial, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, Vector2, Vector3,
+  Box3, DoubleSide, LinearFilter, Mesh, MeshBasicMaterial, MeshDepthMaterial, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, Vector2, Vector3,
   WebGLRenderTarget,
 } from 'three';
 
@@ -77,7 +77,7 @@ export class Ground {
   }
 
   free() {
-    for (const target of this.#targets) target.dispose();
+    for (const one of [...this.#targets, this.plane.geometry, this.plane.material, this.#screen.geometry, this.#blur, this.#depth]) one.dispose();
     this.stale();
   }
 
@@ -95,15 +95,13 @@ export class Ground {
     for (const { objects } of meshes) for (const object of objects) box.expandByObject(object, true);
     this.#place(box);
     this.#camera.layers.mask = meshes.reduce((mask, { bit }) => mask | (1 << bit), 0);
-    const { overrideMaterial, environment } = scene;
     scene.overrideMaterial = this.#depth;
     this.plane.visible = false;
     const [first, second] = this.#targets;
     renderer.setRenderTarget(first);
-    renderer.setClearColor(new Color(0), 0);
     renderer.clear();
     renderer.render(scene, this.#camera);
-    Object.assign(scene, { overrideMaterial, environment });
+    scene.overrideMaterial = null;
     for (const blur of BLURS) {
       this.#pass(renderer, first, second, blur / 4 / SIZE, 0);
       this.#pass(renderer, second, first, 0, blur / 4 / SIZE);

@@ -40,8 +40,10 @@ export class Lights {
     let target = this.#made.get(surroundings);
     if (!target) {
       const generator = new PMREMGenerator(this.#renderer);
-      target = generator.fromEquirectangular(surroundings === NEUTRAL ? studio() : surroundings);
+      const picture = surroundings === NEUTRAL ? studio() : surroundings;
+      target = generator.fromEquirectangular(picture);
       generator.dispose();
+      picture.dispose(); // off the GPU: what was made of it stays
       this.#made.set(surroundings, target);
     }
     return target.texture;

@@ -6,10 +6,11 @@ import { MathUtils, Vector3 } from 'three';
 /** From the front, a little from the right and above. */
 const DIRECTION = new Vector3(0.55, 0.38, 1).normalize();
 export const FIELD_OF_VIEW = 32;
-const NEAREST = 0.02;
-const FARTHEST = 12;
+export const NEAREST = 0.02;
+/** How far one may go, in distances from which everything is seen. */
+const FARTHEST = 6;
 /** Not over the poles. */
-const POLE = 1e-4;
+export const POLE = 1e-4;
 
 /**
  * A distance, or a share of that from which everything is seen.
@@ -52,7 +53,7 @@ export function boundsOf({ azimuth = NONE, polar = NONE, distance = NONE, fieldO
     theta: bounds(azimuth.map(radians), -Infinity, Infinity),
     phi: bounds(polar.map(radians), POLE, Math.PI - POLE),
     near: distance[0] ? reachOf(distance[0], diagonal) : { length: NEAREST },
-    far: distance[1] ? reachOf(distance[1], diagonal) : { length: FARTHEST },
+    far: distance[1] ? reachOf(distance[1], diagonal) : { share: FARTHEST },
     fov: bounds(fieldOfView, 1, 170),
   };
 }

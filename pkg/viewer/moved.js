@@ -1,5 +1,6 @@
 /** What of a viewer moves: its camera, by hand, by calls and by itself. */
 import { MathUtils, PerspectiveCamera } from 'three';
+import { ITSELF } from './frame.js';
 import { FIELD_OF_VIEW } from './look.js';
 import { Orbit } from './orbit.js';
 
@@ -11,11 +12,11 @@ export class Moved extends EventTarget {
   orbit;
   /** What the picture is fitted to. @type {Frame | null} */
   box = null;
+  #root;
   /** @type {FirstLook} */
   #firstLook = {};
   /** @type {Limits} */
   #limits = {};
-  #allowed = { zoom: true, pan: true };
 
   /**
    * @param {import('three').Object3D} root what stands before the camera
@@ -25,6 +26,7 @@ export class Moved extends EventTarget {
    */
   constructor(root, element, embedded, changed) {
     super();
+    this.#root = root;
     this.orbit = new Orbit(this.camera, root, element, embedded, changed);
   }
 
@@ -54,21 +56,19 @@ export class Moved extends EventTarget {
   }
 
   get zoomable() {
-    return this.#allowed.zoom;
+    return this.orbit.gestures.zooms;
   }
 
   set zoomable(zoom) {
-    this.#allowed.zoom = zoom;
-    this.orbit.allow(this.#allowed);
+    this.orbit.gestures.zooms = zoom;
   }
 
   get pannable() {
-    return this.#allowed.pan;
+    return this.orbit.gestures.pans;
   }
 
   set pannable(pan) {
-    this.#allowed.pan = pan;
-    this.orbit.allow(this.#allowed);
+    this.orbit.gestures.pans = pan;
   }
 
   get parallel() {
@@ -101,20 +101,30 @@ export class Moved extends EventTarget {
   set limits(limits) {
     this.#limits = limits;
     this.settle();
-    if (this.box) this.orbit.turn(0, 0, 'program');
   }
 
   /** @returns {Stance} */
   get stance() {
     const { theta, phi, radius, target } = this.orbit.stance;
-    const { center, diagonal } = this.box ?? { center: [0, 0, 0], diagonal: 1 };
     return {
       azimuth: MathUtils.radToDeg(theta),
       polar: MathUtils.radToDeg(phi),
-      distance: diagonal * radius,
-      target: /** @type {[number, number, number]} */ (target.toArray().map((x, axis) => center[axis] + diagonal * x)),
+      distance: this.frameNow.diagonal * radius,
+      target: this.unplaced(target),
       fieldOfView: this.camera.fov,
     };
+  }
+
+  /** That of the data; without any, the picture's own. */
+  get frameNow() {
+    return this.box ?? ITSELF;
+  }
+
+  /** The coordinates in the data of a point before the camera. @param {import('three').Vector3} point @returns {[number, number, number]} */
+  unplaced(point) {
+    const { center, diagonal } = this.frameNow;
+    const { x, y, z } = point.clone().applyQuaternion(this.#root.quaternion.clone().invert());
+    return [center[0] + diagonal * x, center[1] + diagonal * y, center[2] + diagonal * z];
   }
 
   /** @param {number} right @param {number} over radians */

@@ -1,13 +1,12 @@
 /** How one moves around: gestures, calls, a slow turn of its own, straight looks at the sides, and back to the first look. */
 import { MathUtils, Quaternion, Spherical, Vector3 } from 'three';
 import { Gestures } from './gestures.js';
-import { boundsOf, lookOf, reached, within } from './look.js';
+import { NEAREST, POLE, boundsOf, lookOf, reached, within } from './look.js';
 import { calm } from './watching.js';
 
 /** @import { Axis, Mover, Pose, Side } from '../viewer.js' */
 
 const MARGIN = 1.1;
-const NEAREST = 0.02;
 const FLIGHT_MS = 420;
 /** A slow turn: once around in half a minute. */
 const TURN_PER_MS = (2 * Math.PI) / 30_000;
@@ -36,8 +35,8 @@ const SIDES = {
   back: [Math.PI, Math.PI / 2],
   right: [Math.PI / 2, Math.PI / 2],
   left: [-Math.PI / 2, Math.PI / 2],
-  top: [0, 1e-4],
-  bottom: [0, Math.PI - 1e-4],
+  top: [0, POLE],
+  bottom: [0, Math.PI - POLE],
 };
 
 /** A move under way. @typedef {{ from: Spherical, to: Spherical, target: Vector3, goal: Vector3, start: number, by: Mover }} Flight */
@@ -48,7 +47,8 @@ export class Orbit {
   #element;
   #embedded;
   #changed;
-  #gestures;
+  /** What a pointer may do. */
+  gestures;
   #target = new Vector3();
   #turning = false;
   /** Lines that are parallel look parallel: an orthographic projection. */
@@ -87,18 +87,13 @@ export class Orbit {
     this.#element = element;
     this.#embedded = embedded;
     this.#changed = changed;
-    this.#gestures = new Gestures(element, {
+    this.gestures = new Gestures(element, {
       begin: () => this.#rest(),
       drag: (x, y) => this.#follow({ right: -2 * Math.PI * x, over: -2 * Math.PI * y }),
       shift: (x, y) => this.#follow({ x, y }),
       pinch: (factor) => this.zoom(factor, 'pointer'),
     }, embedded);
     camera.position.setFromSphericalCoords(2, this.#first.phi, this.#first.theta);
-  }
-
-  /** What the pointer may do besides turning. @param {{ zoom: boolean, pan: boolean }} allowed */
-  allow({ zoom, pan }) {
-    Object.assign(this.#gestures, { zooms: zoom, pans: pan });
   }
 
   /**
@@ -111,28 +106,28 @@ export class Orbit {
     this.#first = lookOf(first, frame);
     this.#bounds = boundsOf(limits, frame);
     this.#camera.fov = within(this.#first.fov, this.#bounds.fov);
-    this.#changed('program');
+    this.#put(this.#place, this.#target);
   }
 
   /** Where the camera stands, and what it turns around, in the frame. */
   get stance() {
     const { theta, phi, radius } = this.#place;
-    return { theta, phi, radius, target: this.#target.clone().applyQuaternion(this.#root.quaternion.clone().invert()) };
+    return { theta, phi, radius, target: this.#target };
   }
 
   /** Listens to the pointer, or no longer. @param {boolean} on */
   listen(on) {
-    this.#gestures.listen(on);
+    this.gestures.listen(on);
   }
 
   /** Whether the pointer moves it. @param {boolean} on */
   enable(on) {
-    this.#gestures.enabled = on;
+    this.gestures.enabled = on;
     this.#element.style.touchAction = on ? (this.#embedded ? 'pan-y' : 'none') : '';
   }
 
   get enabled() {
-    return this.#gestures.enabled;
+    return this.gestures.enabled;
   }
 
   get autoRotate() {
@@ -140,6 +135,7 @@ export class Orbit {
   }
 
   set autoRotate(turns) {
+    if (turns === this.#turning) return;
     this.#turning = turns;
     this.#changed('program');
   }
@@ -213,6 +209,7 @@ export class Orbit {
     reshape();
     this.#whole = this.#distanceFrom(this.#fitted);
     this.#fitted.radius = this.#measure(this.#fitted);
+    this.#confine(this.#fitted);
     if (!fitted) return;
     place.radius = this.#fitted.radius;
     this.#put(place, this.#target);
@@ -294,9 +291,10 @@ export class Orbit {
    */
   #fit(to, animated, by = 'program', goal = new Vector3(), measure = (place) => this.#distanceFrom(place)) {
     this.#measure = measure;
+    this.#confine(to);
     this.#whole = this.#distanceFrom(to);
     to.radius = measure(to);
-    this.#fitted = to.clone();
+    this.#fitted = this.#confine(to).clone();
     this.#flight = null;
     this.#lag = NO_LAG;
     if (!animated || calm().wanted) return this.#put(to, goal, by);
@@ -329,12 +327,21 @@ export class Orbit {
     return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#target));
   }
 
-  /** @param {Spherical} place @param {Vector3} target @param {Mover} [by] */
-  #put(place, target, by = 'program') {
+  /** Moves a place to where the camera may be. @param {Spherical} place */
+  #confine(place) {
     const { theta, phi, near, far } = this.#bounds;
+    // An angle is one of many that are whole turns apart: the one nearest to the middle of the bounds counts.
+    const middle = (theta[0] + theta[1]) / 2;
+    if (Number.isFinite(middle)) place.theta -= 2 * Math.PI * Math.round((place.theta - middle) / (2 * Math.PI));
     place.theta = within(place.theta, theta);
     place.phi = within(place.phi, phi);
     place.radius = within(place.radius, [reached(near, this.#whole), reached(far, this.#whole)]);
+    return place;
+  }
+
+  /** @param {Spherical} place @param {Vector3} target @param {Mover} [by] */
+  #put(place, target, by = 'program') {
+    this.#confine(place);
     this.#target.copy(target);
     this.#camera.position.setFromSpherical(place).add(target);
     this.#camera.lookAt(target);

@@ -122,9 +122,9 @@ class Painter {
     context.drawImage(this.#canvas, 0, this.#canvas.height - height, width, height, 0, 0, width, height);
   }
 
-  /** Nobody shows it any more. @param {import('three').Texture} surroundings */
+  /** A picture shows them no more; another may. @param {import('three').Texture} surroundings */
   drop(surroundings) {
-    this.#lights.drop(surroundings);
+    if ([...this.#pictures].every((picture) => picture.surroundings !== surroundings)) this.#lights.drop(surroundings);
   }
 
   /** @param {number} width @param {number} height */

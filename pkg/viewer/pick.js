@@ -1,5 +1,5 @@
 /** Which triangle lies under a place of the picture, and how the surface around it stands. */
-import { Raycaster, Vector3 } from 'three';
+import { Matrix3, Raycaster, Vector3 } from 'three';
 
 /** @import { BufferGeometry, Mesh, PerspectiveCamera } from 'three' */
 /** @import { Layer } from './stage.js' */
@@ -14,8 +14,8 @@ const ROUNDS = 3;
 const ray = new Raycaster();
 
 /**
- * The nearest triangle of a layer: its index, counted through the layer's objects, where it is hit, before the camera, and the direction
- * of the plane around it that looks at the camera, in the coordinates of the data. `null` where there is none.
+ * The nearest triangle of a layer: its index, counted through the layer's objects, where it is hit, and the direction of the plane
+ * around it that looks at the camera, both as it stands before the camera. `null` where there is none.
  * @param {Layer} layer
  * @param {PerspectiveCamera} camera which may have the projection of another kind
  * @param {number} x from -1 at the left of the picture to 1
@@ -31,9 +31,9 @@ export function triangleAt({ bit, objects }, camera, x, y) {
   const at = meshes.findIndex((mesh) => mesh === hit.object);
   const before = meshes.slice(0, at).reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
   const { geometry, matrixWorld } = meshes[at];
-  const plane = planeAround(geometry, Number(hit.faceIndex));
-  if (plane.clone().transformDirection(matrixWorld).dot(ray.ray.direction) > 0) plane.negate();
-  return { triangle: before + Number(hit.faceIndex), point: hit.point, normal: /** @type {[number, number, number]} */ (plane.toArray()) };
+  const normal = planeAround(geometry, Number(hit.faceIndex)).applyNormalMatrix(new Matrix3().getNormalMatrix(matrixWorld));
+  if (normal.dot(ray.ray.direction) > 0) normal.negate();
+  return { triangle: before + Number(hit.faceIndex), point: hit.point, normal };
 }
 
 /** The mean direction, by area, of the faces near one that stand as it does. @param {BufferGeometry} geometry @param {number} face */

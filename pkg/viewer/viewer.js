@@ -71,7 +71,8 @@ class CanvasViewer extends Moved {
     const context = contextOf(canvas);
     const stage = new Stage({ ...COLORS, ...colors });
     super(stage.root, canvas, embedded, (by) => {
-      this.#moved = by;
+      // What turns by itself does not hide that somebody moved it.
+      if (by !== 'program' || !this.#moved) this.#moved = by;
       this.#ask();
     });
     this.#canvas = canvas;
@@ -88,7 +89,7 @@ class CanvasViewer extends Moved {
       /** @type {import('./keyboard.js').Hands} */
       const hands = {
         turn: (right, over) => this.orbit.turn(right, over, 'keys'),
-        zoom: (factor) => this.orbit.zoom(factor, 'keys'),
+        zoom: (factor) => this.zoomable && this.orbit.zoom(factor, 'keys'),
         home: () => this.orbit.home({ by: 'keys' }),
       };
       listenToKeys(canvas, MOVES, () => (this.interactive && this.box ? hands : undefined));
@@ -101,9 +102,10 @@ class CanvasViewer extends Moved {
     const model = isModel(what);
     if (!model) expectDrawable(what);
     this.clear();
-    this.lit = model;
+    this.lit = false;
     if (model) {
       const { scene, layers, outline, frame: own } = /** @type {Model & Parts} */ (what);
+      this.lit = Object.values(layers).flat().some(({ material }) => [material].flat().some((one) => 'roughness' in one));
       this.box = own;
       this.#first = { up: [0, 1, 0] };
       this.settle();
@@ -205,7 +207,9 @@ class CanvasViewer extends Moved {
 
   /** @param {Partial<Insets>} insets */
   set insets(insets) {
-    this.#insets = { ...this.#insets, ...insets };
+    const asked = { ...this.#insets, ...insets };
+    if (/** @type {(keyof Insets)[]} */ (Object.keys(asked)).every((side) => this.#insets[side] === asked[side])) return;
+    this.#insets = asked;
     this.#reshape();
   }
 
@@ -222,7 +226,7 @@ class CanvasViewer extends Moved {
   }
 
   get upright() {
-    if (this.#up === 'auto') return likelyUp(this.#first, this.box?.size ?? [1, 1, 1]);
+    if (this.#up === 'auto') return likelyUp(this.#first, this.frameNow.size);
     return typeof this.#up === 'string' ? this.#up : nearestAxis(this.#up);
   }
 
@@ -252,12 +256,13 @@ class CanvasViewer extends Moved {
     const found = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
     if (!found) return null;
     const { triangle, normal, point } = found;
-    return { layer: side.layer, triangle, normal, position: this.#unplaced(point) };
+    const direction = normal.applyQuaternion(this.#stage.root.quaternion.clone().invert());
+    return { layer: side.layer, triangle, normal: direction.toArray(), position: this.unplaced(point) };
   }
 
   /** @param {[number, number, number]} position @param {[number, number, number]} [normal] */
   project(position, normal) {
-    const { center, diagonal } = this.box ?? { center: [0, 0, 0], diagonal: 1 };
+    const { center, diagonal } = this.frameNow;
     const { root } = this.#stage;
     this.camera.updateMatrixWorld();
     const at = new Vector3(...position).sub(new Vector3(...center)).divideScalar(diagonal).applyQuaternion(root.quaternion);
@@ -265,13 +270,6 @@ class CanvasViewer extends Moved {
     const { x, y, z } = at.project(this.camera);
     const { width, height, ratio } = this;
     return { x: ((1 + x) * width) / 2 / ratio, y: ((1 - y) * height) / 2 / ratio, visible: Math.abs(z) <= 1 && facing !== false };
-  }
-
-  /** The coordinates in the data of a point before the camera. @param {Vector3} point @returns {[number, number, number]} */
-  #unplaced(point) {
-    const { center, diagonal } = this.box ?? { center: [0, 0, 0], diagonal: 1 };
-    const { x, y, z } = point.clone().applyQuaternion(this.#stage.root.quaternion.clone().invert());
-    return [center[0] + diagonal * x, center[1] + diagonal * y, center[2] + diagonal * z];
   }
 
   /** @returns {[number, number, number] | null} */
@@ -286,8 +284,9 @@ class CanvasViewer extends Moved {
 
   set surroundings(surroundings) {
     if (surroundings === this.#surroundings) return;
-    if (this.#surroundings !== NEUTRAL) this.#painter.drop(this.#surroundings);
+    const before = this.#surroundings;
     this.#surroundings = /** @type {import('three').Texture | typeof NEUTRAL} */ (surroundings);
+    if (before !== NEUTRAL) this.#painter.drop(before);
     this.#ask();
   }
 
@@ -330,6 +329,7 @@ class CanvasViewer extends Moved {
     this.#ground.stale();
     this.box = null;
     this.context.clearRect(0, 0, this.width, this.height);
+    this.#ask();
   }
 
   suspend() {

@@ -109,6 +109,15 @@ pub enum Error {
 }
 
 impl Error {
+    /// [`Error::BadOption`] of these words.
+    pub(crate) fn bad_option(option: &str, expected: &str, found: &str) -> Error {
+        Error::BadOption {
+            option: option.into(),
+            expected: expected.into(),
+            found: found.into(),
+        }
+    }
+
     /// The stable code, the same in Rust and in JS.
     pub fn code(&self) -> &'static str {
         match self {

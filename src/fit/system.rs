@@ -16,7 +16,6 @@ const OFFSET: [f32; 2] = [0.6, 1.5];
 const ROUGHNESS: f64 = 0.25;
 /// Volume, in cubes of the sub-domain's radius, from which four centres are taken for not lying in a plane.
 const FLAT: f64 = 1e-9;
-
 /// Added to the diagonal, in φ at one spacing, where centres that nearly coincide leave the matrix no inverse.
 const LEAST_RIDGE: f64 = 1e-9;
 
@@ -82,7 +81,8 @@ impl System {
         if self.sites < 4 {
             return None;
         }
-        let small = |(weights, _): &Solution| weights.iter().all(|w| w.abs() < 1e9);
+        let small =
+            |(weights, linear): &Solution| weights.iter().chain(linear).all(|w| w.abs() < 1e9);
         let least = ridge + LEAST_RIDGE * self.unit_phi;
         let solution = self.weights(ridge).filter(small);
         let solution = solution.or_else(|| self.weights(least).filter(small));

@@ -116,12 +116,3 @@ pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T
         .as_ref()
         .map_or(JsValue::UNDEFINED, |value| array(value).into())
 }
-
-#[cfg(any(feature = "exports", feature = "samples"))]
-pub(crate) fn bad_option(option: &str, expected: &str, found: &str) -> Error {
-    Error::BadOption {
-        option: option.into(),
-        expected: expected.into(),
-        found: found.into(),
-    }
-}

@@ -1,6 +1,7 @@
 //! Sample scans, for JavaScript.
 
-use crate::js::{JsResult, bad_option, object};
+use crate::base::error::Error;
+use crate::js::{JsResult, object};
 use crate::samples::{self, Model};
 use js_sys::{Float32Array, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -23,8 +24,8 @@ extern "C" {
 #[wasm_bindgen]
 pub fn sample(options: &SampleOptions) -> JsResult {
     let name = options.model();
-    let model =
-        Model::from_name(&name).ok_or_else(|| bad_option("model", "duck, pig or part", &name))?;
+    let model = Model::from_name(&name)
+        .ok_or_else(|| Error::bad_option("model", "duck, pig or part", &name))?;
     let count = options
         .count()
         .map_or(model.default_points(), |n| n as usize);

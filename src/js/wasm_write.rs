@@ -1,8 +1,8 @@
 //! Results to files, from JavaScript.
 
+use crate::base::error::Error;
 use crate::cloud::Unit;
 use crate::formats::{self, Output, WriteOptions};
-use crate::js::bad_option;
 use crate::js::clouds::{PointCloud, triple};
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -30,11 +30,11 @@ pub fn write(result: &PointCloud, options: &WriteSettings) -> Result<Uint8Array,
     let name = format.as_deref().unwrap_or("ply");
     let format = Output::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = Output::ALL.iter().map(|format| format.name()).collect();
-        bad_option("format", &names.join(", "), name)
+        Error::bad_option("format", &names.join(", "), name)
     })?;
     let named = |name: &str| {
         Unit::from_name(name)
-            .ok_or_else(|| bad_option("unit", "mm, cm, m, in, ft, us-ft or deg", name))
+            .ok_or_else(|| Error::bad_option("unit", "mm, cm, m, in, ft, us-ft or deg", name))
     };
     let options = WriteOptions {
         ascii: options.encoding().as_deref() == Some("ascii"),

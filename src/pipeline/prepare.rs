@@ -105,14 +105,15 @@ pub struct PieceReport {
 pub fn prepare(cloud: &Cloud, steps: &[Step], progress: &mut dyn Progress) -> Result<Prepared> {
     if steps.len() > MOST {
         let expected = format!("at most {MOST} steps");
-        return Err(refused("prepare", &expected, steps.len().to_string()));
+        let found = steps.len().to_string();
+        return Err(Error::bad_option("prepare", &expected, &found));
     }
     let mut scan = Scan {
         cloud,
         kept: (0..cloud.len() as u32).collect(),
+        dropped_by: vec![0; cloud.len()],
         measured: None,
     };
-    let mut dropped_by = vec![0; cloud.len()];
     let mut reports = Vec::new();
     for (number, step) in (1..).zip(steps) {
         let start = Instant::now();
@@ -122,12 +123,10 @@ pub fn prepare(cloud: &Cloud, steps: &[Step], progress: &mut dyn Progress) -> Re
         if dropped.len() == scan.kept.len() {
             let option = format!("prepare[{}]", reports.len());
             let found = format!("a step '{}' that drops all {}", step.name(), dropped.len());
-            return Err(refused(&option, "a step that keeps a point", found));
+            let expected = "a step that keeps a point";
+            return Err(Error::bad_option(&option, expected, &found));
         }
-        for &i in &dropped {
-            dropped_by[i as usize] = number;
-        }
-        scan.drop_those(&dropped_by);
+        scan.drop_those(&dropped, number);
         report.step = step.name();
         report.kept = scan.kept.len();
         report.dropped = dropped.len();
@@ -136,7 +135,7 @@ pub fn prepare(cloud: &Cloud, steps: &[Step], progress: &mut dyn Progress) -> Re
     }
     Ok(Prepared {
         kept: scan.kept,
-        dropped_by,
+        dropped_by: scan.dropped_by,
         steps: reports,
     })
 }
@@ -146,10 +145,13 @@ struct Scan<'a> {
     cloud: &'a Cloud,
     /// The caller's indices, ascending.
     kept: Vec<u32>,
+    /// Of each of the caller's points 0, or the number of the step that dropped it.
+    dropped_by: Vec<u8>,
+    /// Of those that were left when it was asked for last.
     measured: Option<Measured>,
 }
 
-/// What was measured of the points that are left.
+/// What was measured of some points.
 struct Measured {
     frame: Frame,
     tree: Octree,
@@ -163,15 +165,11 @@ type Watch<'a> = (&'a mut dyn Progress, std::ops::Range<f32>);
 impl Scan<'_> {
     /// Which of the points that are left a step drops, as the caller's indices, and what it saw.
     fn perform(&mut self, step: &Step, (progress, range): Watch) -> Result<(Vec<u32>, StepReport)> {
-        let region = match step {
-            Step::Region { region, keep } => Some((region, *keep)),
-            _ => None,
-        };
-        if let Some((region, keep)) = region {
+        if let Step::Region { region, keep } = step {
             progress.update(Stage::Prepare, range.start)?;
             let at = |&i: &u32| self.cloud.frame.to_caller(self.cloud.points[i as usize]);
             let each = self.kept.iter().copied();
-            let dropped = each.filter(|i| region.holds(at(i)) != keep).collect();
+            let dropped = each.filter(|i| region.holds(at(i)) != *keep).collect();
             return Ok((dropped, StepReport::default()));
         }
         let cloud = self.cloud;
@@ -239,9 +237,11 @@ impl Scan<'_> {
         Ok((dropped, report))
     }
 
+    /// What is known of the points that are left.
     fn measured(&mut self, progress: &mut dyn Progress) -> Result<&Measured> {
         let measured = match self.measured.take() {
-            Some(measured) => measured,
+            Some(measured) if measured.callers.len() == self.kept.len() => measured,
+            Some(measured) => measured.of_those(|&i| self.dropped_by[i as usize] == 0),
             None => {
                 let part = match self.kept.len() < self.cloud.len() {
                     true => Some(self.cloud.select(&self.kept)?),
@@ -261,28 +261,30 @@ impl Scan<'_> {
         Ok(self.measured.insert(measured))
     }
 
-    /// Takes away what has been dropped by some step.
-    fn drop_those(&mut self, dropped_by: &[u8]) {
-        let is_left = |i: &u32| dropped_by[*i as usize] == 0;
-        let before = self.kept.len();
-        self.kept.retain(is_left);
-        if self.kept.len() == before {
-            return;
+    /// Takes away what a step dropped.
+    fn drop_those(&mut self, dropped: &[u32], step: u8) {
+        for &i in dropped {
+            self.dropped_by[i as usize] = step;
         }
-        let Some(measured) = self.measured.take() else {
-            return;
-        };
-        let left = || (0..measured.callers.len()).filter(|&i| is_left(&measured.callers[i]));
-        let points: Vec<_> = left().map(|i| measured.tree.points[i]).collect();
-        let from: Vec<usize> = left().collect();
+        self.kept.retain(|&i| self.dropped_by[i as usize] == 0);
+    }
+}
+
+impl Measured {
+    /// The same of a part of the points, which are told by the caller's indices.
+    fn of_those(self, is_left: impl Fn(&u32) -> bool) -> Measured {
+        let from: Vec<usize> = (0..self.callers.len())
+            .filter(|&i| is_left(&self.callers[i]))
+            .collect();
+        let points: Vec<_> = from.iter().map(|&i| self.tree.points[i]).collect();
         let tree = Octree::build(&points);
         let of: Vec<usize> = tree.order.iter().map(|&i| from[i as usize]).collect();
-        self.measured = Some(Measured {
-            frame: measured.frame,
-            features: measured.features.select(&of),
-            callers: of.iter().map(|&i| measured.callers[i]).collect(),
+        Measured {
+            frame: self.frame,
+            features: self.features.select(&of),
+            callers: of.iter().map(|&i| self.callers[i]).collect(),
             tree,
-        });
+        }
     }
 }
 
@@ -342,13 +344,5 @@ fn pieces_report(pieces: Pieces, keep: &Keep, kept: &[bool], frame: Frame) -> St
         labels: Some(pieces.of),
         reason: reason.into(),
         ..StepReport::default()
-    }
-}
-
-fn refused(option: &str, expected: &str, found: String) -> Error {
-    Error::BadOption {
-        option: option.into(),
-        expected: expected.into(),
-        found,
     }
 }

@@ -124,7 +124,7 @@ impl Planes {
         let on_planes: Vec<bool> = (0..voters.len())
             .map(|k| found.iter().any(|plane| plane.own[k]))
             .collect();
-        let seen = |found: &Found| seen_from_front(tree, &voters, found, known.eye);
+        let seen = |found: &Found| seen_from_front(&voters, found, known.eye);
         let mut all: Vec<Plane> = found
             .iter()
             .map(|plane| judged(&voters, plane, &on_planes, seen(plane)))
@@ -187,16 +187,14 @@ impl Plane {
 
 /// Whether most of a plane's points were seen from the side that its normal points to; `None` where nobody knows.
 fn seen_from_front(
-    tree: &Octree,
     voters: &[Voter],
     found: &Found,
     eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
 ) -> Option<bool> {
-    let (n, count) = (tree.points.len() as u64, voters.len() as u64);
-    let own = (0..count).filter(|&k| found.own[k as usize]);
+    let own = voters.iter().zip(&found.own).filter(|&(_, own)| *own);
     let (mut seen, mut front) = (0u32, 0u32);
-    for k in own {
-        if let Some(eye) = eye((k * n / count) as usize) {
+    for (voter, _) in own {
+        if let Some(eye) = eye(voter.point) {
             seen += 1;
             front += u32::from((eye.as_dvec3() - found.point).dot(found.normal) > 0.0);
         }
@@ -230,7 +228,8 @@ fn judged(
         None if 2.0 * above >= stands => 1.0,
         None => -1.0,
     };
-    let in_front = if front > 0.0 { above } else { stands - above } / stands.max(1.0);
+    let before = if front > 0.0 { above } else { stands - above };
+    let in_front = before / stands.max(1.0);
     let near = |&(_, height): &(Vec3, f64)| {
         (thick..TOUCHES * sheet.cell + thick).contains(&(front * height))
     };

@@ -108,7 +108,7 @@ impl Step {
             Some("polygon") => fields.polygon()?,
             _ => {
                 let found = name.as_deref().map_or("nothing".into(), described);
-                return Err(refused(&format!("{path}.step"), NAMES, &found));
+                return Err(Error::bad_option(&format!("{path}.step"), NAMES, &found));
             }
         };
         fields.none_left(step)
@@ -141,7 +141,7 @@ impl Fields<'_> {
         let option = format!("{}.{name}", self.path);
         match self.take(name) {
             Some(value) => read(&*value).ok_or_else(|| bad(&option, expected, &*value)),
-            None => fallback.ok_or_else(|| refused(&option, expected, "nothing")),
+            None => fallback.ok_or_else(|| Error::bad_option(&option, expected, "nothing")),
         }
     }
 
@@ -237,11 +237,7 @@ impl Fields<'_> {
                 option,
                 expected,
                 found,
-            } => Error::BadOption {
-                option: format!("{}.{option}", self.path),
-                expected,
-                found,
-            },
+            } => Error::bad_option(&format!("{}.{option}", self.path), &expected, &found),
             other => other,
         })?;
         let keep = self.switch("keep", true)?;
@@ -252,7 +248,7 @@ impl Fields<'_> {
     fn none_left(self, step: Step) -> Result<Step> {
         match self.entries.into_iter().flatten().next() {
             None => Ok(step),
-            Some((name, value)) => Err(refused(
+            Some((name, value)) => Err(Error::bad_option(
                 &format!("{}.{name}", self.path),
                 &format!("no such property of the step '{}'", step.name()),
                 &described(&*value),
@@ -312,13 +308,5 @@ fn described(value: &dyn Value) -> String {
 }
 
 fn bad(option: &str, expected: &str, value: &dyn Value) -> Error {
-    refused(option, expected, &described(value))
-}
-
-fn refused(option: &str, expected: &str, found: &str) -> Error {
-    Error::BadOption {
-        option: option.into(),
-        expected: expected.into(),
-        found: found.into(),
-    }
+    Error::bad_option(option, expected, &described(value))
 }

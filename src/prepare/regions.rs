@@ -49,13 +49,17 @@ impl Region {
         let (lo, hi) = (DVec3::from(min), DVec3::from(max));
         if !(lo.is_finite() && hi.is_finite() && lo.cmple(hi).all()) {
             let expected = "finite numbers, min nowhere beyond max";
-            return Err(bad("min, max", expected, &format!("{min:?}, {max:?}")));
+            return Err(Error::bad_option(
+                "min, max",
+                expected,
+                &format!("{min:?}, {max:?}"),
+            ));
         }
         let turn = turn.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         let quaternion = DQuat::from_array(turn);
         let length = quaternion.length();
         if !(length.is_finite() && length > 0.0) {
-            return Err(bad(
+            return Err(Error::bad_option(
                 "turn",
                 "four numbers that are not all 0",
                 &format!("{turn:?}"),
@@ -76,7 +80,7 @@ impl Region {
         let center = DVec3::from(center);
         if !(radius.is_finite() && radius >= 0.0 && center.is_finite()) {
             let found = format!("{center}, {radius}");
-            return Err(bad(
+            return Err(Error::bad_option(
                 "center, radius",
                 "finite numbers, radius at least 0",
                 &found,
@@ -94,7 +98,7 @@ impl Region {
         let normal = normal.normalize_or_zero();
         if !point.is_finite() || normal == DVec3::ZERO {
             let expected = "finite numbers, normal of a length that is not 0";
-            return Err(bad(
+            return Err(Error::bad_option(
                 "point, normal",
                 expected,
                 &format!("{point}, {normal}"),
@@ -111,7 +115,7 @@ impl Region {
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
         if polygon.len() < 6 || !polygon.len().is_multiple_of(2) || !finite(polygon) {
             let expected = "x y of three corners or more, finite";
-            return Err(bad(
+            return Err(Error::bad_option(
                 "polygon",
                 expected,
                 &format!("{} numbers", polygon.len()),
@@ -120,7 +124,7 @@ impl Region {
         let columns: Option<[f64; 16]> = camera.try_into().ok().filter(|_| finite(camera));
         let Some(columns) = columns else {
             let found = format!("{} numbers", camera.len());
-            return Err(bad("camera", "16 finite numbers", &found));
+            return Err(Error::bad_option("camera", "16 finite numbers", &found));
         };
         Ok(Region::Screen {
             polygon: polygon.chunks_exact(2).map(DVec2::from_slice).collect(),
@@ -160,14 +164,6 @@ fn encloses(polygon: &[DVec2], p: DVec2) -> bool {
         .count()
         % 2
         == 1
-}
-
-fn bad(option: &str, expected: &str, found: &str) -> Error {
-    Error::BadOption {
-        option: option.into(),
-        expected: expected.into(),
-        found: found.into(),
-    }
 }
 
 #[cfg(test)]

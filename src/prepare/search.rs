@@ -33,6 +33,8 @@ const LARGEST: f32 = 4.0;
 /// A point that votes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Voter {
+    /// Which point of the tree it is.
+    pub(super) point: usize,
     pub(super) at: Vec3,
     pub(super) normal: Vec3,
     pub(super) area: f64,
@@ -62,6 +64,7 @@ pub(super) fn voters(tree: &Octree, features: &Features) -> Vec<Voter> {
         .collect();
     let most = LARGEST * quantile(areas.clone(), 2);
     let voter = |(i, area): (usize, f32)| Voter {
+        point: i,
         at: tree.points[i],
         normal: features.normals[i],
         area: f64::from(area.min(most)),

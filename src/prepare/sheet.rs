@@ -40,10 +40,7 @@ impl Sheet {
             (long - normal * long.dot(normal)).normalize_or(normal.any_orthonormal_vector());
         let axes = [first, normal.cross(first)];
         let middle = spread.mean;
-        let flat = |p: &Vec3| {
-            let q = p.as_dvec3() - middle;
-            DVec2::new(q.dot(axes[0]), q.dot(axes[1]))
-        };
+        let flat = |p: &Vec3| flat(*p, middle, axes);
         let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (lo, hi) = points
             .iter()
@@ -110,9 +107,8 @@ impl Sheet {
         beside.into_iter().flatten()
     }
 
-    fn flat(&self, p: Vec3) -> DVec2 {
-        let q = p.as_dvec3() - self.middle;
-        DVec2::new(q.dot(self.axes[0]), q.dot(self.axes[1]))
+    fn cell_beneath(&self, p: Vec3) -> Option<usize> {
+        self.cell_of(flat(p, self.middle, self.axes))
     }
 
     fn cell_of(&self, flat: DVec2) -> Option<usize> {
@@ -129,21 +125,21 @@ impl Sheet {
 
     /// Whether the sheet, or its rim, is beneath a point.
     pub(super) fn is_beneath(&self, p: Vec3) -> bool {
-        let cell = self.cell_of(self.flat(p));
+        let cell = self.cell_beneath(p);
         cell.is_some_and(|at| self.state[at] != State::Outside)
     }
 
     /// Whether the sheet is beneath a point and goes on all around.
     pub(super) fn is_around(&self, p: Vec3) -> bool {
         let is_inside = |at: usize| self.state[at] == State::Inside;
-        let cell = self.cell_of(self.flat(p));
+        let cell = self.cell_beneath(p);
         cell.is_some_and(|at| is_inside(at) && self.around(at).all(is_inside))
     }
 
     /// Share of the rim at which none of these points is, which are those of other surfaces near the plane.
     pub(super) fn free_rim(&self, near: impl Iterator<Item = Vec3>) -> f64 {
         let mut bound = vec![false; self.state.len()];
-        for at in near.filter_map(|p| self.cell_of(self.flat(p))) {
+        for at in near.filter_map(|p| self.cell_beneath(p)) {
             bound[at] = true;
             for next in self.around(at) {
                 bound[next] = true;
@@ -153,6 +149,12 @@ impl Sheet {
         let free = rim().filter(|&at| !bound[at]).count();
         free as f64 / rim().count().max(1) as f64
     }
+}
+
+/// Where a point is above a plane through `middle`, along its axes.
+fn flat(p: Vec3, middle: DVec3, axes: [DVec3; 2]) -> DVec2 {
+    let q = p.as_dvec3() - middle;
+    DVec2::new(q.dot(axes[0]), q.dot(axes[1]))
 }
 
 #[cfg(test)]

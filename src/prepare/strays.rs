@@ -15,6 +15,7 @@ use crate::base::error::Result;
 use crate::base::linalg::Spread;
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
+use crate::base::sort_keys::key;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
@@ -91,19 +92,17 @@ pub fn between(
     progress: &mut dyn Progress,
 ) -> Result<Vec<bool>> {
     let mut flies = vec![false; tree.points.len()];
-    // Points by viewpoint, in the order in which viewpoints come up.
-    let mut views: Vec<(Vec3, Vec<u32>)> = Vec::new();
-    for i in 0..tree.points.len() {
-        let Some(eye) = eye(i) else { continue };
-        match views.iter_mut().find(|(of, _)| *of == eye) {
-            Some((_, points)) => points.push(i as u32),
-            None => views.push((eye, vec![i as u32])),
-        }
-    }
-    let count = views.len().max(1) as f32;
-    for (k, (eye, points)) in views.into_iter().enumerate() {
-        progress.update(Stage::Prepare, k as f32 / count)?;
-        let view = View::new(tree, eye, &points);
+    let seen = (0..tree.points.len() as u32).filter_map(|i| Some((eye(i as usize)?, i)));
+    let mut seen: Vec<(Vec3, u32)> = seen.collect();
+    // Equal viewpoints next to each other; their points in the octree's order.
+    seen.sort_by_key(|(eye, _)| eye.to_array().map(key));
+    let count = seen.len().max(1) as f32;
+    let mut done = 0;
+    for same in seen.chunk_by(|a, b| a.0 == b.0) {
+        progress.update(Stage::Prepare, done as f32 / count)?;
+        done += same.len();
+        let points: Vec<u32> = same.iter().map(|&(_, i)| i).collect();
+        let view = View::new(tree, same[0].0, &points);
         for (&i, fly) in points.iter().zip(view.flying()) {
             flies[i as usize] = fly;
         }

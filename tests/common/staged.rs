@@ -5,6 +5,9 @@
 
 use glam::{DVec3, dvec3};
 use pointweave::base::rng::Rng;
+use pointweave::prepare::pieces::{GAP, Keep};
+use pointweave::prepare::planes::{Drop, MIN_SHARE};
+use pointweave::prepare::recipe::Step;
 use pointweave::samples::{Model, sample_with_noise};
 
 /// What a point was taken from.
@@ -81,6 +84,27 @@ enum Solid {
     Ground(f64, f64),
     /// x or z is at most this far: a wall at minus that, up to a height and along to a width.
     Wall(usize, f64, f64),
+}
+
+/// The recipe for such scans: strays, then what carries, then all but the largest piece.
+pub fn tidy() -> Vec<Step> {
+    vec![Step::Outliers, Step::Flying, plane(Drop::All), largest()]
+}
+
+pub fn plane(drop: Drop) -> Step {
+    Step::Plane {
+        drop,
+        behind: true,
+        min_share: MIN_SHARE,
+        seed: 0,
+    }
+}
+
+pub fn largest() -> Step {
+    Step::Pieces {
+        keep: Keep::Largest(1),
+        gap: GAP,
+    }
 }
 
 impl Staged {

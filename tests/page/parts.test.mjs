@@ -9,7 +9,7 @@ import { UNKNOWN, colorAt, colorize } from '../../pkg/viewer/colormap.js';
 import { localSpacing } from '../../pkg/viewer/density.js';
 import { creases, sharpPoints } from '../../pkg/viewer/sharp.js';
 import { likelyUp } from '../../pkg/viewer/upright.js';
-import { CONTROLS, PLACES, Settings, TARGETS, defaultOf } from '../../www/src/controls/settings.js';
+import { CONTROLS, PLACES, Settings, TARGETS, defaultOf, entriesOf } from '../../www/src/controls/settings.js';
 import { meaningOf } from '../../www/src/controls/targets.js';
 import { printingWords, solidOf } from '../../www/src/results/printing.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
@@ -84,7 +84,7 @@ test('settings: defaults are the package\'s, and an address brings back what was
   chosen.set('sharp', false);
   chosen.set('accuracy', DEFAULTS.reconstruct.accuracy); // the default is no choice
   const again = new Settings();
-  again.read(new URLSearchParams(chosen.entries()));
+  again.read(new URLSearchParams(entriesOf(chosen.chosen)));
   assert.deepEqual([again.target, again.values], [chosen.target, chosen.values]);
   assert.deepEqual(again.options(again.target), {
     reduce: { target: { tolerance: 0.002 }, method: 'paper', fuzzifier: 1.8 }, surface: { sharp: false },

@@ -22,7 +22,7 @@ import { Standing } from './controls/standing.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
 import { Shown } from './state/shown.js';
-import { forget, keep, keepsSome, kept } from './state/keeping.js';
+import { forget, keep, keepsSome, kept, keyOf } from './state/keeping.js';
 import { Steps } from './controls/steps.js';
 import { meaningOf } from './controls/targets.js';
 import { say } from './words/say.js';
@@ -96,24 +96,27 @@ export class App {
   #openOne(file, columns) {
     this.#message.hide();
     const beside = this.#together.map((other) => other.file).filter((other) => other !== file);
-    const named = this.#together.filter(({ kind, file: other }) => kind === 'beside' && other !== file).map((other) => other.file);
-    return this.#session.openFile(file, { columns, beside, key: keep(file, named) });
+    return this.#session.openFile(file, { columns, beside, key: keyOf(file) });
   }
 
   /** Shows another value: a step of the history, or what a reload finds. */
   async #follow(/** @type {Value} */ { scan, settings, look, edits }) {
     const session = this.#session;
+    this.#message.hide();
     session.settings.take(settings);
     this.#look.wish(look.view, look.paint);
     this.#controls.show(session.target, session.scan?.count ?? 0);
     if (session.scan && same(scan, fromOf(session.scan))) {
+      if (this.#root.dataset.state === 'reading') session.cancel(); // another scan was on its way
       this.#edit(edits);
-      await session.apply();
+      session.apply(); // begins at once, if at all; #made then turns the pieces
       if (session.outcome && !session.busy && !same(session.turned, edits.turned ?? [])) session.turn(edits.turned ?? []);
     } else if (scan && 'key' in scan) {
       const found = await kept(scan.key);
+      if (this.#shown.value.scan !== scan) return; // another step came
       if (found) return session.openFile(found.file, { ...scan, beside: found.beside });
       this.#message.show('kept-no-more', scan.key, { standIn: !session.scan });
+      this.#stay();
       if (!session.scan) await session.openSample('duck');
     } else if (scan && 'src' in scan) await session.openAddress(scan.src);
     else await session.openSample(scan?.model ?? 'duck');
@@ -134,6 +137,10 @@ export class App {
 
   #listenToControls() {
     byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
+    byId('skip', HTMLAnchorElement).addEventListener('click', (event) => {
+      event.preventDefault(); // another # would be another address
+      byId('panel', HTMLElement).focus();
+    });
     this.#run.addEventListener('click', () => this.#session.run());
     for (const button of this.#samples()) {
       button.addEventListener('click', () => this.#openSample(/** @type {SampleName} */ (button.dataset.sample)));
@@ -164,6 +171,7 @@ export class App {
 
   #enter(/** @type {State} */ state) {
     this.#root.dataset.state = state;
+    this.#side.busy = state !== 'ready';
     this.#run.hidden = true;
     if (state === 'reading') {
       this.#progress.start(say('Reading the scan'));
@@ -192,7 +200,14 @@ export class App {
     this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
     this.#note(known ? {} : { scan: fromOf(scan), edits: {} }, { step: !known });
-    this.#sayKept();
+    this.#keepFile(known ? undefined : scan.given);
+  }
+
+  /** Has the browser keep a file that could be read, and says what it keeps. */
+  async #keepFile(/** @type {File | undefined} */ file) {
+    const named = this.#together.filter((other) => other.kind === 'beside' && other.file !== file).map((other) => other.file);
+    if (file) await keep(file, named);
+    await this.#sayKept();
   }
 
   /** Lets a person say what the columns of a table are. */
@@ -203,14 +218,12 @@ export class App {
 
   #made(/** @type {Outcome} */ outcome) {
     const { reduced, mesh } = outcome;
-    this.#look.made(outcome);
+    const { turned = [] } = this.#shown.value.edits;
+    if (mesh && turned.length) this.#session.turn(turned); // which shows and offers it
+    else this.#offer(outcome, false);
     this.#showStanding(outcome.scan);
     this.#numbers.made(outcome, this.#session.settings.options(this.#session.target));
-    this.#side.show(mesh, { all: this.#flipped, piece: false });
-    this.#saving.offer(outcome);
     this.#comparison.made(outcome);
-    const { turned = [] } = this.#shown.value.edits;
-    if (turned.length) this.#session.turn(turned);
     const points = format.count(reduced.positions.length / 3);
     announce(mesh ? say('Done: {points} points kept, {triangles} triangles', { points, triangles: format.count(mesh.indices.length / 3) }) : say('Done: {points} points kept, no mesh', { points }));
   }
@@ -224,10 +237,15 @@ export class App {
     announce(triangle === undefined ? say('The mesh was flipped') : say('The piece was flipped'));
   }
 
-  #turned(/** @type {Outcome} */ outcome) {
+  /** Shows what was made, and offers files of it. @param {Outcome} outcome @param {boolean} piece whether one was turned by hand */
+  #offer(outcome, piece) {
     this.#look.made(outcome);
-    this.#side.show(outcome.mesh, { all: this.#flipped, piece: this.#session.turned.length > 0 });
+    this.#side.show(outcome.mesh, { all: this.#flipped, piece });
     this.#saving.offer(outcome);
+  }
+
+  #turned(/** @type {Outcome} */ outcome) {
+    this.#offer(outcome, this.#session.turned.length > 0);
     this.#controls.show(this.#session.target, outcome.scan.count);
   }
 
@@ -244,15 +262,20 @@ export class App {
     const session = this.#session;
     const { scan, outcome } = session;
     if (!scan) return;
-    const before = JSON.stringify([scan.cloud.up, scan.cloud.unit]);
+    const before = { ...scan.cloud };
+    const { stale } = session;
     session.stand({ up: typeof up === 'string' ? AXES[up] : up ?? scan.own.up, unit: unit ?? scan.own.unit });
-    if (before === JSON.stringify([scan.cloud.up, scan.cloud.unit])) return;
-    this.#look.stand(up ?? 'auto');
+    const isTurned = !same(before.up, scan.cloud.up);
+    const isMeasured = before.unit !== scan.cloud.unit;
+    if (!isTurned && !isMeasured) return;
+    if (isTurned) this.#look.stand(up ?? 'auto');
     this.#showStanding(scan);
-    if (session.stale) this.#run.hidden = false;
-    this.#showSize(scan);
-    this.#numbers.unit = scan.cloud.unit;
-    this.#look.relabel();
+    if (session.stale !== stale) this.#run.hidden = stale;
+    if (isMeasured) {
+      this.#showSize(scan);
+      this.#numbers.unit = scan.cloud.unit;
+      this.#look.relabel();
+    }
     if (outcome) this.#saving.offer(outcome);
   }
 
@@ -274,6 +297,13 @@ export class App {
   #cancelled() {
     announce(say('Cancelled'));
     this.#run.hidden = !this.#session.scan;
+    this.#stay();
+  }
+
+  /** What could not be shown is not in the value either. */
+  #stay() {
+    const { scan } = this.#session;
+    if (scan && !same(fromOf(scan), this.#shown.value.scan)) this.#note({ scan: fromOf(scan), edits: {} }, { step: false });
   }
 
   /** @param {{ error: any, title: string, given?: File, model?: SampleName }} failure `given`: the file that could not be read */
@@ -286,6 +316,7 @@ export class App {
       this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#openOne(given, chosen));
     }
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
+    this.#stay();
     if (standIn) this.#session.openSample('duck');
   }
 

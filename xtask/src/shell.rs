@@ -48,13 +48,16 @@ pub fn run_both(commands: [(&mut Command, &str); 2]) -> Result<()> {
     let outputs = thread::scope(|scope| {
         commands
             .map(|(command, remedy)| {
-                command.stdout(Stdio::piped()).stderr(Stdio::piped());
-                (scope.spawn(|| command.output()), remedy)
+                let output = || {
+                    let output = command.output();
+                    output.map_err(|error| not_started(command, &error))
+                };
+                (scope.spawn(output), remedy)
             })
             .map(|(running, remedy)| (running.join().expect("no panic"), remedy))
     });
     let results = outputs.map(|(output, remedy)| {
-        let output = output.map_err(|error| format!("a program cannot be run ({error})"))?;
+        let output = output?;
         print!("{}", String::from_utf8_lossy(&output.stdout));
         eprint!("{}", String::from_utf8_lossy(&output.stderr));
         if output.status.success() {

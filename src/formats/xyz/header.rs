@@ -190,6 +190,7 @@ fn names_within(text: &[u8], dialect: Dialect, width: usize) -> Option<Vec<Strin
     });
     found.cloned()
 }
+
 /// Names of columns; between blanks a unit in brackets belongs to the name before it.
 fn names_of(text: &[u8], dialect: Dialect) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();

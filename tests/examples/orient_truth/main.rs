@@ -9,6 +9,8 @@
 mod scenes;
 
 mod peer;
+#[path = "../../common/peer.rs"]
+mod process;
 mod real;
 
 use glam::DVec3;

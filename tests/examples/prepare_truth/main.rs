@@ -6,6 +6,8 @@
 //! temporary files.
 
 mod peer;
+#[path = "../../common/peer.rs"]
+mod process;
 #[path = "../../common/staged.rs"]
 mod staged;
 
@@ -14,11 +16,8 @@ use pointweave::Cloud;
 use pointweave::base::progress::Silent;
 use pointweave::formats::{Output, RawCloud, detect, read, write};
 use pointweave::pipeline::{Prepared, prepare};
-use pointweave::prepare::pieces::{GAP, Keep};
-use pointweave::prepare::planes::{Drop, MIN_SHARE};
-use pointweave::prepare::recipe::Step;
 use pointweave::samples::Model;
-use staged::{Body, Scan, Stage, Staged};
+use staged::{Body, Scan, Stage, Staged, tidy};
 use std::error::Error;
 use std::time::Instant;
 
@@ -61,24 +60,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Strays, then what carries, then all but the largest piece.
-fn recipe() -> Vec<Step> {
-    vec![
-        Step::Outliers,
-        Step::Flying,
-        Step::Plane {
-            drop: Drop::All,
-            behind: true,
-            min_share: MIN_SHARE,
-            seed: 0,
-        },
-        Step::Pieces {
-            keep: Keep::Largest(1),
-            gap: GAP,
-        },
-    ]
-}
-
 fn row(staged: &Staged, viewpoints: bool, peer: &mut Option<Peer>) -> Result<(), Box<dyn Error>> {
     let scan = staged.scan();
     let mut cloud = Cloud::from_f64(&scan.positions())?;
@@ -87,7 +68,7 @@ fn row(staged: &Staged, viewpoints: bool, peer: &mut Option<Peer>) -> Result<(),
         cloud = cloud.with_viewpoints(&eyes, Some(&scan.of))?;
     }
     let start = Instant::now();
-    let prepared = prepare(&cloud, &recipe(), &mut Silent)?;
+    let prepared = prepare(&cloud, &tidy(), &mut Silent)?;
     let ms = start.elapsed().as_secs_f64() * 1e3;
     let spacing = spacing(&scan);
     let kept: Vec<bool> = prepared.dropped_by.iter().map(|&by| by == 0).collect();
@@ -178,7 +159,7 @@ fn spacing(scan: &Scan) -> f64 {
 fn cut(file: &str) -> Result<(), Box<dyn Error>> {
     let bytes = std::fs::read(file)?;
     let cloud = read(&bytes, detect(&bytes, Some(file))?)?.to_cloud()?;
-    let prepared = prepare(&cloud, &recipe(), &mut Silent)?;
+    let prepared = prepare(&cloud, &tidy(), &mut Silent)?;
     println!("{file}: {} points", cloud.len());
     told(&prepared);
     let object = cloud.select(&prepared.kept)?;

@@ -84,11 +84,6 @@ export class Settings {
     return { reduce: { target, ...chosen('reduce') }, surface: chosen('reconstruct') };
   }
 
-  /** As in an address: only what was chosen. @returns {[string, string][]} */
-  entries() {
-    return entriesOf(this.chosen);
-  }
-
   /** Takes what an address says; what makes no sense there is left out. */
   read(/** @type {URLSearchParams} */ words) {
     this.reset();

@@ -26,7 +26,7 @@ export class Steps {
     const [undo, redo] = [() => this.#shown.undo(), () => this.#shown.redo()];
     return [
       { key: 'z', ctrl: true, shown: 'Ctrl+Z', does: say('Undo'), act: undo },
-      { key: 'shift z', ctrl: true, also: [], shown: 'Ctrl+Shift+Z', does: say('Redo'), act: redo },
+      { key: 'shift z', ctrl: true, shown: 'Ctrl+Shift+Z', does: say('Redo'), act: redo },
     ];
   }
 }

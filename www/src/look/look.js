@@ -68,7 +68,7 @@ export class Look {
   /** Layers whose colours are being made. @type {Set<View>} */
   #awaited = new Set();
   #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
-  #split = new Split(() => this.#show(this.#view));
+  #split = new Split(() => this.#show(this.#view), (view) => this.#viewer && (this.#viewer.view = view));
 
   /**
    * @param {HTMLElement} root  told the view, for styles
@@ -121,6 +121,7 @@ export class Look {
     this.#split.offerKept(false);
     if (!this.#wished) this.#chosen = null;
     this.#wished = false;
+    if (this.#viewer) this.#viewer.up = 'auto';
     this.#viewer?.show(bare({ ...scan.cloud, normals: undefined }), { frame: scan.frame });
     for (const view of VIEWS) radio('view', view).disabled = view !== 'points';
     this.#offerPaints();
@@ -152,8 +153,7 @@ export class Look {
     this.#kept = outcome;
     this.#beside = false;
     this.#viewer?.set('kept', bare(outcome.mesh));
-    this.#painted.delete('kept');
-    this.#awaited.delete('kept');
+    this.#offerPaints();
     this.#split.offerKept(true);
     this.#show(this.#view);
     announce(say('The mesh is kept. The next one is shown beside it.'));
@@ -219,7 +219,7 @@ export class Look {
     const seen = compared ? right : /** @type {View} */ (view);
     const paint = this.#color(seen);
     this.#legend.show(paint?.legend ?? null, this.#awaited.has(seen));
-    if (this.#viewer) this.#viewer.view = compared ? { left, right, at: this.#split.at } : view;
+    if (this.#viewer) this.#viewer.view = compared ? this.#split.view : view;
   }
 
   /** Gives a layer the chosen colours, unless it has them. */
@@ -238,8 +238,8 @@ export class Look {
   async #make(view, layer, subject) {
     const awaited = this.#awaited.add(view);
     this.#root.dataset.painting = '';
-    const paint = await this.#painting.paint(this.#paint, layer, subject);
-    if (awaited !== this.#awaited) return;
+    const paint = await this.#painting.paint(this.#paint, layer, subject, () => awaited === this.#awaited);
+    if (!paint || awaited !== this.#awaited) return;
     awaited.delete(view);
     if (!awaited.size) delete this.#root.dataset.painting;
     this.#put(view, paint);

@@ -3,6 +3,8 @@
  * @typedef {Float32Array | Float64Array | Uint32Array | Uint16Array | Uint8Array} Numbers
  */
 
+/** @type {Paint} */
+const NONE = { colors: null, legend: null };
 /** What no colours are made from. */
 const UNUSED = new Set(['attributes', 'cells', 'colors', 'cloud', 'report', 'viewpoints', 'crs', 'file']);
 
@@ -30,14 +32,15 @@ export class Painting {
   }
 
   /**
-   * One after the other.
+   * One after the other. Where they cannot be made there are none.
    * @param {PaintName} name
    * @param {'points' | 'reduced' | 'mesh'} layer
    * @param {Subject} subject
-   * @returns {Promise<Paint>}
+   * @param {() => boolean} wanted  whether they still are, when it is their turn
+   * @returns {Promise<Paint | null>} null for those that are wanted no more
    */
-  paint(name, layer, subject) {
-    const made = this.#before.then(() => this.#paint(name, layer, subject));
+  paint(name, layer, subject, wanted) {
+    const made = this.#before.then(() => (wanted() ? this.#paint(name, layer, subject) : null)).catch(() => NONE);
     this.#before = made;
     return made;
   }
@@ -70,7 +73,14 @@ export class Painting {
 
   #start() {
     const worker = new Worker(new URL('./paint-worker.js', import.meta.url), { type: 'module' });
-    this.#ready = new Promise((ready) => worker.addEventListener('message', ready, { once: true }));
+    this.#ready = new Promise((ready, fail) => {
+      worker.addEventListener('message', ready, { once: true });
+      worker.addEventListener('error', fail, { once: true });
+    });
+    worker.addEventListener('error', () => {
+      for (const done of this.#waiting.values()) done(NONE);
+      this.reset();
+    });
     worker.addEventListener('message', ({ data }) => {
       this.#waiting.get(data.job)?.(data);
       this.#waiting.delete(data.job);

@@ -15,12 +15,16 @@ export class Split {
   #left = byId('split-left', HTMLSelectElement);
   #right = byId('split-right', HTMLSelectElement);
   #words = [byId('split-left-words', HTMLElement), byId('split-right-words', HTMLElement)];
-  #changed;
+  #moved;
   /** Where it is, as a share of the width. */
   at = 0.5;
 
-  constructor(/** @type {() => void} */ changed) {
-    this.#changed = changed;
+  /**
+   * @param {() => void} changed  other views are beside each other
+   * @param {(view: import('pointweave/viewer').Split) => void} moved
+   */
+  constructor(changed, moved) {
+    this.#moved = moved;
     for (const select of [this.#left, this.#right]) select.addEventListener('change', changed);
     this.#handle.addEventListener('pointerdown', (event) => {
       event.preventDefault();
@@ -42,6 +46,11 @@ export class Split {
 
   get sides() {
     return { left: /** @type {View} */ (this.#left.value), right: /** @type {View} */ (this.#right.value) };
+  }
+
+  /** What stands at either side of it, for a viewer. */
+  get view() {
+    return { ...this.sides, at: this.at };
   }
 
   show(/** @type {boolean} */ shown) {
@@ -87,6 +96,6 @@ export class Split {
     this.at = Math.min(1, Math.max(0, to));
     this.#box.style.setProperty('--at', String(this.at));
     this.#handle.ariaValueNow = String(Math.round(100 * this.at));
-    this.#changed();
+    this.#moved(this.view);
   }
 }

@@ -34,8 +34,15 @@ export class SideCard {
 
   /** No piece is to be chosen any more. */
   stop() {
+    if (!this.choosing) return;
     this.#piece.ariaPressed = 'false';
     this.#ask(null);
+  }
+
+  /** While something is made, there is nothing to turn. */
+  set busy(/** @type {boolean} */ busy) {
+    this.stop();
+    this.#flip.disabled = this.#piece.disabled = busy;
   }
 
   /** @param {SurfaceMesh | null} mesh @param {{ all: boolean, piece: boolean }} byHand  what a person has turned */

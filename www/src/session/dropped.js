@@ -5,7 +5,9 @@
  * @typedef {{ file: File, path: string, kind: Kind }} Dropped
  */
 
-const SCAN = /\.(ply|las|laz|e57|ptx|pts|pcd|obj|off|stl|glb|3mf|asc|grd|tiff?|splat|spz|xyz|xyzn|xyzrgb|txt|csv|tsv|dat|zip|gz)$/i;
+const SCAN = /\.(ply|las|laz|e57|ptx|pts|pcd|obj|off|coff|noff|cnoff|stl|glb|3mf|asc|grid|agr|grd|tiff?|splat|spz|xyz|xyzn|xyzrgb|txt|csv|tsv|dat|zip|gz)$/i;
+/** A scan where nothing else is. */
+const TEXT = /\.(txt|csv|tsv|dat)$/i;
 /** A mesh may name its material library and pictures, which come along. */
 const BESIDE = /\.(mtl|png|jpe?g|webp)$/i;
 /** No more files of a folder are looked at. */
@@ -18,7 +20,8 @@ const MOST = 2_000;
  */
 export function sortOut(files) {
   const all = files.map(({ file, path }) => ({ file, path, kind: kindOf(file.name) }));
-  const first = all.find(({ kind }) => kind === 'scan') ?? all.find(({ kind }) => kind === 'other') ?? all[0];
+  const scans = all.filter(({ kind }) => kind === 'scan');
+  const first = scans.find(({ file }) => !TEXT.test(file.name)) ?? scans[0] ?? all.find(({ kind }) => kind === 'other') ?? all[0];
   return { first, all };
 }
 

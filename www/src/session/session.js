@@ -73,14 +73,7 @@ export class Session extends Emitter {
   openFile(file, { columns, beside, key } = {}) {
     const source = { title: file.name, file: stem(file.name), given: file, key, columns };
     return this.#open(source, async (signal) => {
-      const options = { name: file.name, columns, beside, signal, onProgress: this.#report(signal) };
-      return read(file, options).catch(async (error) => {
-        // The page's own small files, and those of other programs.
-        if (error?.code !== 'unsupported-file' || error.found !== COMPRESSED) throw error;
-        const plain = await expandAside(new Uint8Array(await file.arrayBuffer()));
-        signal.throwIfAborted();
-        return read(plain, options);
-      });
+      return readAny(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) });
     });
   }
 
@@ -88,7 +81,8 @@ export class Session extends Emitter {
   stand(/** @type {Own} */ { up, unit }) {
     const { cloud } = this.scan ?? {};
     if (!cloud) return;
-    for (const one of [cloud, this.outcome?.reduced, this.outcome?.mesh]) if (one) Object.assign(one, { up, unit });
+    const { outcome } = this;
+    for (const one of [cloud, this.#whole?.reduced, this.#whole?.mesh, outcome?.reduced, outcome?.mesh]) if (one) Object.assign(one, { up, unit });
   }
 
   /** The result was made when another side was up, which helps to tell which side is out: made again, it may be another. */
@@ -102,7 +96,7 @@ export class Session extends Emitter {
     return this.#open({ title: name, file: stem(name), src }, async (signal) => {
       const onProgress = this.#report(signal);
       const bytes = await fetchBytes(ownAddress(src), signal, (share) => onProgress({ stage: 'download', overall: share }));
-      return read(bytes, { name, signal, onProgress });
+      return readAny(bytes, { name, signal, onProgress });
     });
   }
 
@@ -128,6 +122,7 @@ export class Session extends Emitter {
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
       this.outcome = this.#whole = outcome;
+      this.stand(scan.cloud); // as was said meanwhile
       this.turned = [];
       this.#wanted = false;
       this.#end(job, 'made', outcome);
@@ -287,7 +282,23 @@ export class Session extends Emitter {
     this.emit('state', 'ready');
     this.emit(event, detail);
   }
+}
 
+/**
+ * Reads a scan. A GLB that is compressed, as the page's own small files and those of other programs are, is expanded first.
+ * @param {Blob | Uint8Array<ArrayBuffer>} data
+ * @param {import('pointweave').ReadOptions & { signal: AbortSignal, onProgress: (progress: Progress) => void }} options
+ */
+async function readAny(data, options) {
+  try {
+    return await read(data, options);
+  } catch (error) {
+    const { code, found } = /** @type {{ code?: string, found?: unknown }} */ (error);
+    if (code !== 'unsupported-file' || found !== COMPRESSED) throw error;
+  }
+  const plain = await expandAside(data instanceof Blob ? new Uint8Array(await data.arrayBuffer()) : data);
+  options.signal.throwIfAborted();
+  return read(plain, options);
 }
 
 /** @param {Outcome} outcome @param {SurfaceMesh} mesh @returns {Outcome} */

@@ -13,13 +13,22 @@ const MOST = 4;
 /** Of this visit: these cost no storage. @type {Map<string, Kept>} */
 const open = new Map();
 
-/** Keeps a file, and says under which key. @param {File} file @param {File[]} beside what its mesh may name */
-export function keep(file, beside) {
-  const key = `${file.name} ${file.size} ${file.lastModified}`;
+/** Under which key a file is kept. @param {File} file */
+export function keyOf({ name, size, lastModified }) {
+  return `${name} ${size} ${lastModified}`;
+}
+
+/** Keeps a file, unless it is kept already. @param {File} file @param {File[]} beside what its mesh may name */
+export async function keep(file, beside) {
+  const key = keyOf(file);
+  if (open.get(key)?.beside.length === beside.length) return;
   open.set(key, { file, beside });
-  const stored = store((table) => table.put({ file, beside, at: Date.now() }, key)).then(makeRoom);
-  stored.catch((error) => console.info('Pointweave cannot keep the scan for a reload:', error?.message));
-  return key;
+  try {
+    await store((table) => table.put({ file, beside, at: Date.now() }, key));
+    await makeRoom();
+  } catch (error) {
+    console.info('Pointweave cannot keep the scan for a reload:', /** @type {any} */ (error)?.message);
+  }
 }
 
 /** @param {string} key @returns {Promise<Kept | undefined>} undefined where it is kept no more */

@@ -64,7 +64,8 @@ export class Shown extends Emitter {
 
   /** What the browser still knows of this entry: after a reload, or when the tab comes back. @returns {Value | null} */
   recall() {
-    this.#newest = remembered();
+    // An entry that is new has nothing behind it.
+    if (history.state?.value) this.#newest = remembered();
     this.#take(history.state);
     return history.state?.value ?? null;
   }
@@ -75,13 +76,13 @@ export class Shown extends Emitter {
     const same = JSON.stringify(value) === JSON.stringify(this.value);
     const first = this.value.scan === null;
     this.value = value;
-    if (step && !same && !first) {
-      this.#newest = ++this.#step;
-      history.pushState({ step: this.#step, value }, '', this.#addressOf(value));
-    } else {
-      history.replaceState({ step: this.#step, value }, '', this.#addressOf(value));
+    // Until the first scan is there, the address says what is to be opened.
+    if (value.scan) {
+      const push = step && !same && !first;
+      if (push) this.#newest = ++this.#step;
+      history[push ? 'pushState' : 'replaceState']({ step: this.#step, value }, '', this.#addressOf(value));
+      remember(this.#newest);
     }
-    remember(this.#newest);
     this.emit('changed', value);
   }
 

@@ -138,6 +138,7 @@ export default {
   'Open a scan from this device': 'Einen Scan von diesem Gerät öffnen',
   'This list': 'Diese Liste',
   'Close a message or menu, cancel the work': 'Meldung oder Menü schließen, Arbeit abbrechen',
+  'Opening the scan…': 'Der Scan wird geöffnet …',
   'Reading the scan': 'Scan wird gelesen',
   'Done: {points} points kept, {triangles} triangles': 'Fertig: {points} Punkte behalten, {triangles} Dreiecke',
   'Done: {points} points kept, no mesh': 'Fertig: {points} Punkte behalten, kein Netz',

@@ -138,6 +138,7 @@ export default {
   'Open a scan from this device': 'Ouvrir un scan de cet appareil',
   'This list': 'Cette liste',
   'Close a message or menu, cancel the work': 'Fermer un message ou un menu, annuler le travail',
+  'Opening the scan…': 'Ouverture du scan…',
   'Reading the scan': 'Lecture du scan',
   'Done: {points} points kept, {triangles} triangles': 'Terminé : {points} points gardés, {triangles} triangles',
   'Done: {points} points kept, no mesh': 'Terminé : {points} points gardés, pas de maillage',
