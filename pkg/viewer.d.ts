@@ -256,6 +256,16 @@ export interface Viewer extends EventTarget {
    * the plane around that, towards the viewer, in the coordinates of the data; null for none. Costs a pass over the triangles.
    */
   pick(x: number, y: number): { layer: string; triangle: number; position: [number, number, number]; normal: [number, number, number] } | null;
+  /**
+   * The point of a cloud that is seen at a place of the canvas, in CSS pixels from its top left: its index in the layer and where it is; null
+   * where none is within `reach` pixels (default 12). Costs a pass over the points.
+   */
+  pickPoint(x: number, y: number, reach?: number): { layer: string; index: number; position: [number, number, number] } | null;
+  /**
+   * The product of projection and view as 16 numbers by columns, as the step `polygon` of a recipe takes it: of positions in the
+   * coordinates of the data, or of those that are counted from `origin`.
+   */
+  sight(origin?: [number, number, number]): number[];
   /** Draws at once; else it is drawn before the next frame. */
   draw(): void;
   /** The picture as it is shown, without background. Types and quality as `canvas.toBlob`. */

@@ -1,5 +1,5 @@
-/** Which triangle lies under a place of the picture, and how the surface around it stands. */
-import { Matrix3, Raycaster, Vector3 } from 'three';
+/** Which triangle, or which point, lies under a place of the picture, and how the surface around it stands. */
+import { Matrix3, Matrix4, Raycaster, Vector3 } from 'three';
 
 /** @import { BufferGeometry, Mesh, PerspectiveCamera } from 'three' */
 /** @import { Layer } from './stage.js' */
@@ -10,6 +10,9 @@ const REACH = 0.1;
 const ALIKE = Math.cos(Math.PI / 9);
 /** So often the plane is found from what is like it. */
 const ROUNDS = 3;
+
+/** How much farther away, as a share of the diagonal, a point may be that is hit in its middle and not at the end of the reach. */
+const WORTH = 0.05;
 
 const ray = new Raycaster();
 
@@ -34,6 +37,43 @@ export function triangleAt({ bit, objects }, camera, x, y) {
   const normal = planeAround(geometry, Number(hit.faceIndex)).applyNormalMatrix(new Matrix3().getNormalMatrix(matrixWorld));
   if (normal.dot(ray.ray.direction) > 0) normal.negate();
   return { triangle: before + Number(hit.faceIndex), point: hit.point, normal };
+}
+
+/**
+ * The point of a layer that is meant by a place: of those within reach the nearest to the eye, but no point hides one that is much nearer
+ * to the place. `null` where there is none.
+ * @param {Layer} layer
+ * @param {PerspectiveCamera} camera
+ * @param {{ x: number, y: number, width: number, height: number, reach: number }} place in device pixels from the top left
+ */
+export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
+  let found = null;
+  let least = Infinity;
+  let before = 0;
+  for (const { type, geometry, matrixWorld } of objects) {
+    if (type !== 'Points') continue;
+    const positions = /** @type {import('three').BufferAttribute} */ (geometry.getAttribute('position'));
+    const eye = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, matrixWorld);
+    const m = new Matrix4().multiplyMatrices(camera.projectionMatrix, eye).elements;
+    const [ex, ey, ez, ew] = [eye.elements[2], eye.elements[6], eye.elements[10], eye.elements[14]];
+    const { array } = positions;
+    for (let i = 0; i < positions.count; i++) {
+      const [px, py, pz] = [array[3 * i], array[3 * i + 1], array[3 * i + 2]];
+      const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
+      if (w <= 0) continue;
+      const dx = ((1 + (m[0] * px + m[4] * py + m[8] * pz + m[12]) / w) * width) / 2 - x;
+      const dy = ((1 - (m[1] * px + m[5] * py + m[9] * pz + m[13]) / w) * height) / 2 - y;
+      const off = Math.hypot(dx, dy) / reach;
+      if (!(off < 1)) continue;
+      // The frame's diagonal is 1: a place that is off by the whole reach is worth so much depth.
+      const cost = WORTH * off - (ex * px + ey * py + ez * pz + ew);
+      if (cost >= least) continue;
+      least = cost;
+      found = { index: before + i, point: new Vector3(px, py, pz).applyMatrix4(matrixWorld) };
+    }
+    before += positions.count;
+  }
+  return found;
 }
 
 /** The mean direction, by area, of the faces near one that stand as it does. @param {BufferGeometry} geometry @param {number} face */

@@ -1,14 +1,13 @@
 /** A viewer: a canvas, what it shows, and how one moves around that. */
-import { Scene, Vector3 } from 'three';
+import { Scene } from 'three';
+import { Aimed } from './aimed.js';
 import { contextOf, expectDrawable } from './checks.js';
 import { COLORS } from './colors.js';
 import { frameOf } from './frame.js';
 import { Ground } from './ground.js';
 import { MOVES, listenToKeys } from './keyboard.js';
 import { NEUTRAL } from './light.js';
-import { Moved } from './moved.js';
 import { sharedPainter } from './painter.js';
-import { triangleAt } from './pick.js';
 import { Size } from './size.js';
 import { ALWAYS, Stage } from './stage.js';
 import { likelyUp, nearestAxis } from './upright.js';
@@ -35,14 +34,9 @@ function isModel(what) {
   return typeof what === 'object' && what !== null && 'kind' in what;
 }
 
-class CanvasViewer extends Moved {
-  width = 0;
-  height = 0;
-  ratio = 1;
+class CanvasViewer extends Aimed {
   scene = new Scene();
   context;
-  /** @type {import('./painter.js').Side[]} */
-  sides = [];
   lit = false;
   #canvas;
   #painter = sharedPainter();
@@ -70,7 +64,7 @@ class CanvasViewer extends Moved {
   constructor(canvas, { interactive = true, keys = true, embedded = true, autoRotate = false, up = 'auto', colors = {}, insets = {} } = {}) {
     const context = contextOf(canvas);
     const stage = new Stage({ ...COLORS, ...colors });
-    super(stage.root, canvas, embedded, (by) => {
+    super(stage, canvas, embedded, (by) => {
       // What turns by itself does not hide that somebody moved it.
       if (by !== 'program' || !this.#moved) this.#moved = by;
       this.#ask();
@@ -243,33 +237,6 @@ class CanvasViewer extends Moved {
   set pointSize(scale) {
     this.#pointSize = scale;
     this.#ask();
-  }
-
-  /** @param {number} x @param {number} y */
-  pick(x, y) {
-    const { width, height, ratio } = this;
-    const side = this.sides.find(({ from, to }) => x * ratio >= from && x * ratio < to);
-    const layer = side && this.#stage.layers.get(side.layer);
-    if (!side || !layer) return null;
-    this.orbit.update(performance.now());
-    this.camera.updateMatrixWorld();
-    const found = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
-    if (!found) return null;
-    const { triangle, normal, point } = found;
-    const direction = normal.applyQuaternion(this.#stage.root.quaternion.clone().invert());
-    return { layer: side.layer, triangle, normal: direction.toArray(), position: this.unplaced(point) };
-  }
-
-  /** @param {[number, number, number]} position @param {[number, number, number]} [normal] */
-  project(position, normal) {
-    const { center, diagonal } = this.frameNow;
-    const { root } = this.#stage;
-    this.camera.updateMatrixWorld();
-    const at = new Vector3(...position).sub(new Vector3(...center)).divideScalar(diagonal).applyQuaternion(root.quaternion);
-    const facing = normal && new Vector3(...normal).applyQuaternion(root.quaternion).dot(this.camera.position.clone().sub(at)) > 0;
-    const { x, y, z } = at.project(this.camera);
-    const { width, height, ratio } = this;
-    return { x: ((1 + x) * width) / 2 / ratio, y: ((1 - y) * height) / 2 / ratio, visible: Math.abs(z) <= 1 && facing !== false };
   }
 
   /** @returns {[number, number, number] | null} */

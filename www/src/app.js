@@ -24,6 +24,11 @@ import { Sharing } from './session/sharing.js';
 import { Shown } from './state/shown.js';
 import { forget, keep, keepsSome, kept, keyOf } from './state/keeping.js';
 import { Steps } from './controls/steps.js';
+import { fromOf, same } from './state/from.js';
+import { contentsOf } from './results/contents.js';
+import { stepsOf, switchedOff } from './tidy/recipe.js';
+import { Suggestion } from './tidy/suggestion.js';
+import { Tidy } from './tidy/tidy.js';
 import { meaningOf } from './controls/targets.js';
 import { say } from './words/say.js';
 
@@ -31,7 +36,7 @@ import { say } from './words/say.js';
  * @import { Key } from './keys.js'
  * @import { Outcome, Scan, State } from './session/session.js'
  * @import { SampleName } from './controls/samples.js'
- * @import { Edits, From, Value } from './state/shown.js'
+ * @import { Edits, Listed, Value } from './state/shown.js'
  */
 
 /** @type {Record<string, [number, number, number]>} */
@@ -48,6 +53,10 @@ export class App {
     if (chosen) this.#side.stop();
     this.#look.choosePiece(chosen);
   });
+  #tidy = new Tidy(this.#session, this.#look, (recipe) => this.#recut(recipe));
+  #suggestion = new Suggestion(this.#session, () => this.#tidy.start('floor'));
+  /** What an address wants to be cut off the scan that it names, or the next that a person opens. @type {Listed[]} */
+  #awaited = [];
   #numbers = new Numbers();
   #side = new SideCard((triangle) => this.#flip(triangle), (chosen) => {
     if (chosen) this.#standing.stop();
@@ -76,8 +85,9 @@ export class App {
   start() {
     const recalled = this.#shown.recall();
     if (recalled) return this.#follow(recalled);
-    const { words, sample, src, view, paint } = readAddress();
+    const { words, sample, src, recipe, view, paint } = readAddress();
     this.#session.settings.read(words);
+    this.#awaited = recipe;
     this.#look.wish(view, paint);
     this.#controls.show(this.#session.target, 0);
     if (!src || sample) return this.#session.openSample(sample ?? 'duck');
@@ -126,6 +136,7 @@ export class App {
     const session = this.#session;
     session.on('state', (state) => this.#enter(state));
     session.on('opened', (scan) => this.#opened(scan));
+    session.on('cut', (scan) => this.#left(scan));
     session.on('progress', (progress) => this.#progress.update(progress));
     session.on('made', (outcome) => this.#made(outcome));
     session.on('turned', (outcome) => this.#turned(outcome));
@@ -187,20 +198,55 @@ export class App {
     for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === scan.model);
     document.title = `${scan.title} · Pointweave`;
     byId('caption-title', HTMLElement).textContent = scan.title;
-    byId('caption-detail', HTMLElement).textContent = contentsOf(scan);
-    this.#showSize(scan);
     this.#look.opened(scan);
     const known = same(fromOf(scan), this.#shown.value.scan);
-    if (known) this.#edit(this.#shown.value.edits);
+    const edits = known ? this.#shown.value.edits : this.#wanted(scan);
+    this.#tidy.opened();
+    this.#edit(edits);
     this.#showStanding(scan);
+    this.#reset(scan);
+    this.#dropped.opened(scan.given);
+    this.#offerColumns(scan);
+    this.#note(known ? {} : { scan: fromOf(scan), edits }, { step: !known });
+    this.#keepFile(known ? undefined : scan.given);
+    if (isSample(scan.model ?? null) || edits.recipe?.length) this.#suggestion.hide();
+    else this.#suggestion.opened(scan);
+  }
+
+  /** What an address wants to be done to a scan: to the one that it names, or to the first that a person opens. @returns {Edits} */
+  #wanted(/** @type {Scan} */ scan) {
+    if (scan.model && !readAddress().sample) return {};
+    const recipe = this.#awaited;
+    this.#awaited = [];
+    return recipe.length ? { recipe } : {};
+  }
+
+  /** Nothing was made of this scan yet. */
+  #reset(/** @type {Scan} */ scan) {
+    byId('caption-detail', HTMLElement).textContent = contentsOf(scan, this.#session.whole?.count);
+    this.#showSize(scan);
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
     this.#saving.offer(null);
-    this.#dropped.opened(scan.given);
-    this.#offerColumns(scan);
     this.#controls.show(this.#session.target, scan.count);
-    this.#note(known ? {} : { scan: fromOf(scan), edits: {} }, { step: !known });
-    this.#keepFile(known ? undefined : scan.given);
+  }
+
+  /** Something was cut off the scan, or is there again. */
+  #left(/** @type {Scan} */ scan) {
+    this.#look.cut(scan);
+    this.#reset(scan);
+    this.#showStanding(scan);
+    this.#tidy.left();
+  }
+
+  /** Another recipe, as a step that can be undone. */
+  #recut(/** @type {Listed[]} */ recipe) {
+    const { turned, recipe: before, ...rest } = this.#shown.value.edits;
+    const edits = recipe.length ? { ...rest, recipe } : rest;
+    this.#suggestion.hide();
+    this.#edit(edits);
+    this.#note({ edits });
+    this.#session.apply();
   }
 
   /** Has the browser keep a file that could be read, and says what it keeps. */
@@ -258,10 +304,12 @@ export class App {
   }
 
   /** Which way is up, and the unit: of the picture, the scan and whatever is saved of it. What nobody said is as the file says it. */
-  #edit(/** @type {Edits} */ { up, unit }) {
+  #edit(/** @type {Edits} */ { up, unit, recipe = [] }) {
     const session = this.#session;
     const { scan, outcome } = session;
     if (!scan) return;
+    session.recipe = stepsOf(recipe);
+    this.#tidy.show(recipe);
     const before = { ...scan.cloud };
     const { stale } = session;
     session.stand({ up: typeof up === 'string' ? AXES[up] : up ?? scan.own.up, unit: unit ?? scan.own.unit });
@@ -308,6 +356,7 @@ export class App {
 
   /** @param {{ error: any, title: string, given?: File, model?: SampleName }} failure `given`: the file that could not be read */
   #failed({ error, title, given, model }) {
+    if (this.#refused(error)) return;
     const standIn = !this.#session.scan && !model;
     this.#message.showError(error, title, { standIn });
     if (given) this.#dropped.failed(given);
@@ -320,8 +369,21 @@ export class App {
     if (standIn) this.#session.openSample('duck');
   }
 
+  /** A step of a recipe that came with an address, or that was switched on, cannot be done: it is switched off, and all else is. */
+  #refused(/** @type {any} */ error) {
+    const { edits } = this.#shown.value;
+    const recipe = switchedOff(edits.recipe, error);
+    if (!recipe) return false;
+    this.#message.show('bad-step', error.message);
+    this.#edit({ ...edits, recipe });
+    this.#note({ edits: { ...edits, recipe } }, { step: false });
+    this.#session.apply();
+    return true;
+  }
+
   #escape() {
     if (this.#message.open) this.#message.hide();
+    else if (this.#tidy.open) this.#tidy.stop();
     else if (this.#side.choosing) this.#side.stop();
     else if (this.#standing.picking) this.#standing.stop();
     else this.#session.cancel();
@@ -363,11 +425,14 @@ export class App {
 
   /** Somebody put another # behind the same address. */
   #addressChanged() {
-    const { words, sample, view, paint } = readAddress();
+    const { words, sample, recipe, view, paint } = readAddress();
     this.#session.settings.read(words);
     this.#look.wish(view, paint);
     const other = isSample(sample) && sample !== this.#session.scan?.model;
-    this.#note(other ? { scan: { model: sample }, edits: {} } : {}, { step: false });
+    const { recipe: before, ...rest } = other ? {} : this.#shown.value.edits;
+    const edits = recipe.length ? { ...rest, recipe } : rest;
+    if (!other) this.#edit(edits);
+    this.#note(other ? { scan: { model: sample }, edits } : { edits }, { step: false });
     if (other) this.#openSample(sample);
     else this.#settingsChanged();
   }
@@ -375,24 +440,4 @@ export class App {
   #samples() {
     return /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll('[data-sample]'));
   }
-}
-
-/** Where a scan comes from, as it is kept. @returns {From} */
-function fromOf(/** @type {Scan} */ { model, src, key, columns }) {
-  return model ? { model } : src ? { src } : { key: key ?? '', ...(columns && { columns }) };
-}
-
-function same(/** @type {unknown} */ one, /** @type {unknown} */ other) {
-  return JSON.stringify(one) === JSON.stringify(other);
-}
-
-/** What a scan holds, and what of its file was no point. */
-function contentsOf(/** @type {Scan} */ { model, count, cloud }) {
-  const { faces = 0, sampled = 0 } = cloud.file ?? {};
-  const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
-  const parts = [model ? say('simulated scan') : '', format.points(count)];
-  if (sampled) parts.push(say('taken from {faces} faces', { faces: format.count(faces) }));
-  else if (faces) parts.push(say('the corners of {faces} faces', { faces: format.count(faces) }));
-  if (out) parts.push(say('{count} without a place left out', { count: format.count(out) }));
-  return parts.filter(Boolean).join(', ');
 }

@@ -56,6 +56,10 @@ export class Look {
   #keep = byId('keep-mesh', HTMLButtonElement);
   /** @type {Choice} */
   #view = 'points';
+  /** The scan has colours that say what would be cut off. */
+  #marked = false;
+  /** Which side of the whole scan is up, where nobody says. @type {Axis} */
+  #likely = 'y';
   /** The person's choice for this scan; finishing a job does not change it. @type {Choice | null} */
   #chosen = null;
   /** An address chose it, before its scan was there. */
@@ -114,14 +118,32 @@ export class Look {
   }
 
   opened(/** @type {Scan} */ scan) {
+    if (!this.#wished) this.#chosen = null;
+    this.#wished = false;
+    if (this.#viewer) this.#viewer.up = 'auto';
+    this.#open(scan);
+    this.#likely = this.upright;
+  }
+
+  /** Something was cut off, or is there again. What is left is looked at from the same side. */
+  cut(/** @type {Scan} */ scan) {
+    const viewer = this.#viewer;
+    const before = viewer?.pose;
+    // What stands on a floor may be taller than wide.
+    if (viewer?.up === 'auto' && !scan.cloud.up) viewer.up = this.#likely;
+    this.#open(scan);
+    if (!viewer || !before) return;
+    const { azimuth, elevation } = viewer.pose;
+    viewer.turn(((before.azimuth - azimuth) * Math.PI) / 180, ((before.elevation - elevation) * Math.PI) / 180);
+    viewer.fit();
+  }
+
+  #open(/** @type {Scan} */ scan) {
     this.#scan = scan;
     this.#outcome = this.#kept = null;
     this.#painting.reset();
     this.#keep.hidden = true;
     this.#split.offerKept(false);
-    if (!this.#wished) this.#chosen = null;
-    this.#wished = false;
-    if (this.#viewer) this.#viewer.up = 'auto';
     this.#viewer?.show(bare({ ...scan.cloud, normals: undefined }), { frame: scan.frame });
     for (const view of VIEWS) radio('view', view).disabled = view !== 'points';
     this.#offerPaints();
@@ -163,6 +185,33 @@ export class Look {
   choosePiece(chosen) {
     if (chosen && this.#view !== 'mesh' && this.#view !== 'compare') this.#show('mesh');
     this.#piece.ask(chosen);
+  }
+
+  /**
+   * Shows the scan in these colours, whatever is made meanwhile; null: what was shown before.
+   * @param {Uint8Array | null} colors
+   */
+  mark(colors) {
+    if (!colors && !this.#marked) return;
+    this.#marked = colors !== null;
+    this.#painted.delete('points');
+    if (!colors) return this.#show(this.#view);
+    this.#root.dataset.view = 'points';
+    this.#legend.show(null, false);
+    this.#split.show(false);
+    if (!this.#viewer) return;
+    this.#viewer.paint('points', { colors, legend: null });
+    this.#viewer.view = 'points';
+  }
+
+  /** Leaves room at the lower edge, in CSS pixels; by default that for the views. @param {number} [height] */
+  leave(height = INSETS.bottom) {
+    if (this.#viewer) this.#viewer.insets = { bottom: height };
+  }
+
+  /** Where things are in the picture; null where there is none. @returns {import('pointweave/viewer').Viewer | null} */
+  get aim() {
+    return this.#viewer;
   }
 
   /** @returns {Key[]} */
@@ -209,6 +258,7 @@ export class Look {
 
   #show(/** @type {Choice} */ view) {
     this.#view = view;
+    if (this.#marked) return;
     this.#root.dataset.view = view;
     radio('view', view).checked = true;
     const compared = view === 'compare';
@@ -247,6 +297,7 @@ export class Look {
   }
 
   #put(/** @type {View} */ view, /** @type {Paint} */ paint) {
+    if (this.#marked && view === 'points') return paint;
     this.#viewer?.paint(view, paint);
     this.#painted.set(view, paint);
     return paint;
@@ -339,7 +390,7 @@ export class Look {
 
   /** Stands what is shown on another side, or on a plane with that normal. */
   stand(/** @type {Axis | [number, number, number] | 'auto'} */ up) {
-    if (this.#viewer) this.#viewer.up = up;
+    if (this.#viewer) this.#viewer.up = up === 'auto' && this.#scan?.kept && !this.#scan.cloud.up ? this.#likely : up;
   }
 }
 

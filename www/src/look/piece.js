@@ -1,8 +1,6 @@
 import { announce } from '../dom.js';
 import { say } from '../words/say.js';
-
-/** A pointer that moves farther than this, in CSS pixels, turns the picture and chooses nothing. */
-const STILL = 4;
+import { Still } from './still.js';
 
 /**
  * What is told of a choice: the triangle, and the direction of the plane around it that is seen.
@@ -12,9 +10,9 @@ const STILL = 4;
 /** Lets a person choose a triangle of the mesh: by a click, or by Enter for the one in the middle. */
 export class PieceChoice {
   #canvas;
+  #click;
   /** @type {Chosen | null} */
   #chosen = null;
-  #down = { x: 0, y: 0 };
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -23,29 +21,17 @@ export class PieceChoice {
    */
   constructor(canvas, pick, insets) {
     this.#canvas = canvas;
-    const choose = (/** @type {number} */ x, /** @type {number} */ y) => {
+    this.#click = new Still(canvas, (x, y) => {
       const found = pick(x, y);
       if (found?.layer === 'mesh') this.#chosen?.(found.triangle, found.normal);
       else announce(say('There is no mesh at this place'));
-    };
-    canvas.addEventListener('pointerdown', ({ clientX, clientY }) => (this.#down = { x: clientX, y: clientY }));
-    canvas.addEventListener('click', ({ clientX, clientY }) => {
-      if (!this.#chosen || Math.hypot(clientX - this.#down.x, clientY - this.#down.y) > STILL) return;
-      const { left, top } = canvas.getBoundingClientRect();
-      choose(clientX - left, clientY - top);
-    });
-    canvas.addEventListener('keydown', (event) => {
-      if (!this.#chosen || event.key !== 'Enter') return;
-      event.preventDefault();
-      const { left, right } = insets();
-      choose((canvas.clientWidth + left - right) / 2, canvas.clientHeight / 2);
-    });
+    }, insets);
   }
 
   /** @param {Chosen | null} chosen  null: nothing is to be chosen */
   ask(chosen) {
     this.#chosen = chosen;
-    this.#canvas.classList.toggle('choosing', chosen !== null);
+    this.#click.listen(chosen !== null);
     if (chosen) this.#canvas.focus();
   }
 }

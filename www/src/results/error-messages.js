@@ -103,6 +103,11 @@ export const MESSAGES = {
     text: 'A folder was dropped, and nothing in it is a file that can be seen.',
     advice: 'Drop the scan itself.',
   },
+  'bad-step': {
+    title: 'A step of the tidying cannot be done',
+    text: 'It does not fit this scan, or nothing would be left. It is switched off.',
+    advice: 'Remove it, or do it anew.',
+  },
   'kept-no-more': {
     title: 'This scan is not kept any more',
     text: 'A browser keeps the last few scans on this device, and this one made room or was forgotten.',

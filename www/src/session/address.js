@@ -1,10 +1,11 @@
 import { isSample } from '../controls/samples.js';
 import { entriesOf } from '../controls/settings.js';
+import { recipeOf, recipeWord } from '../tidy/recipe.js';
 
 /**
  * @import { Value } from '../state/shown.js'
  *
- * The part of the address after #: the sample, the settings that were chosen, and what is shown. A file of the
+ * The part of the address after #: the sample, the recipe that tidies it, the settings that were chosen, and what is shown. A file of the
  * person's is never in it. `?src=` before it names a file beside the page.
  */
 
@@ -15,6 +16,7 @@ export function readAddress() {
   return {
     words,
     sample: isSample(sample) ? sample : null,
+    recipe: recipeOf(words.get('prepare')),
     src: new URLSearchParams(location.search).get('src'),
     view: words.get('view'),
     paint: words.get('colors'),
@@ -22,9 +24,10 @@ export function readAddress() {
 }
 
 /** The address that shows the same again. @param {Value} value */
-export function addressOf({ scan, settings, look: { view, paint } }) {
+export function addressOf({ scan, edits: { recipe }, settings, look: { view, paint } }) {
   const words = new URLSearchParams();
   if (scan && 'model' in scan) words.set('sample', scan.model);
+  if (recipe?.length) words.set('prepare', recipeWord(recipe));
   for (const [key, value] of entriesOf(settings)) words.set(key, value);
   if (view !== 'mesh') words.set('view', view);
   if (paint !== 'natural') words.set('colors', paint);

@@ -2,13 +2,14 @@ import { autoCount, createEngine, flip, read, reconstruct, reduce, sample, split
 import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
+import { Preparing } from './preparing.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 import { Emitter } from '../state/emitter.js';
 import { say } from '../words/say.js';
 
 /**
- * @import { FileCloud, PointCloud, Unit, Progress, ReducedCloud, SurfaceMesh } from 'pointweave'
+ * @import { FileCloud, PointCloud, Prepared, Progress, ReducedCloud, Step, SurfaceMesh } from 'pointweave'
  * @import { Frame } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
  * @import { Target } from '../controls/settings.js'
@@ -18,7 +19,8 @@ import { say } from '../words/say.js';
  * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File, key?: string, columns?: string[] }} Source
  * What the file itself says of how it stands. @typedef {Pick<PointCloud, 'up' | 'unit'>} Own
  * @typedef {PointCloud & Partial<Pick<FileCloud, 'file' | 'columns' | 'skipped'>>} Opened
- * @typedef {Source & { cloud: Opened, count: number, frame: Frame, own: Own }} Scan
+ * `kept`: of a scan that was tidied, which points of the file are left.
+ * @typedef {Source & { cloud: Opened, count: number, frame: Frame, own: Own, kept?: Uint32Array }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
@@ -33,18 +35,25 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * What is open, what was made of it, and the one job that may be running. Knows the engine, not the page. `failed`: a source that could
  * not be opened, or the title of a scan that could not be worked on.
  * @extends {Emitter<{
- *   state: State, opened: Scan, progress: { stage: string, overall: number }, made: Outcome, turned: Outcome, cancelled: undefined,
+ *   state: State, opened: Scan, cut: Scan, progress: { stage: string, overall: number }, made: Outcome, turned: Outcome, cancelled: undefined,
  *   failed: { error: any, title: string, given?: File, model?: SampleName },
  * }>}
  */
 export class Session extends Emitter {
   settings = new Settings();
-  /** @type {Scan | null} */
+  /** What is open, without what the recipe cuts off. @type {Scan | null} */
   scan = null;
+  /** The same as it was opened. @type {Scan | null} */
+  whole = null;
+  /** What is cut off before anything else is done. @type {Step[]} */
+  recipe = [];
+  #preparing = new Preparing();
+  /** What the recipe left; null where there is none. @type {Prepared<any> | null} */
+  #prepared = null;
   /** @type {Outcome | null} the last result of the open scan */
   outcome = null;
   /** The same before pieces were turned over. @type {Outcome | null} */
-  #whole = null;
+  #unturned = null;
   /** Triangles whose pieces are turned over. @type {number[]} */
   turned = [];
   /** The options of the last job. */
@@ -79,10 +88,9 @@ export class Session extends Emitter {
 
   /** Keeps with the scan, and with what was made of it, which way is up and what a coordinate is. */
   stand(/** @type {Own} */ { up, unit }) {
-    const { cloud } = this.scan ?? {};
-    if (!cloud) return;
-    const { outcome } = this;
-    for (const one of [cloud, this.#whole?.reduced, this.#whole?.mesh, outcome?.reduced, outcome?.mesh]) if (one) Object.assign(one, { up, unit });
+    const { scan, whole, outcome } = this;
+    if (!scan) return;
+    for (const one of [scan.cloud, whole?.cloud, this.#unturned?.reduced, this.#unturned?.mesh, outcome?.reduced, outcome?.mesh]) if (one) Object.assign(one, { up, unit });
   }
 
   /** The result was made when another side was up, which helps to tell which side is out: made again, it may be another. */
@@ -107,29 +115,57 @@ export class Session extends Emitter {
 
   /** Works again if the settings ask for something else than the last job made or makes. */
   async apply() {
-    if (this.scan && JSON.stringify(this.settings.options(this.target)) !== this.#asked) await this.run();
+    if (this.scan && this.#wish !== this.#asked) await this.run();
   }
 
-  /** Reduces and meshes the open scan. */
+  /** All that a result follows from. */
+  get #wish() {
+    return JSON.stringify([this.recipe, this.settings.options(this.target)]);
+  }
+
+  /** Cuts off what the recipe says, reduces and meshes the rest. */
   async run() {
-    const scan = this.scan;
-    if (!scan) return;
+    if (!this.whole) return;
     const job = this.#begin('working');
     this.#wanted = true;
-    this.#asked = JSON.stringify(this.settings.options(this.target));
-    this.#stood = JSON.stringify(scan.cloud.up);
+    this.#asked = this.#wish;
+    this.#stood = JSON.stringify(this.whole.cloud.up);
+    const { title } = this.whole;
     try {
+      const scan = await this.#cut(this.whole, job.signal);
+      if (job.signal.aborted) return;
+      this.#asked = this.#wish;
       const outcome = await this.#make(scan, job.signal);
       if (job.signal.aborted) return;
-      this.outcome = this.#whole = outcome;
+      this.outcome = this.#unturned = outcome;
       this.stand(scan.cloud); // as was said meanwhile
       this.turned = [];
       this.#wanted = false;
       this.#end(job, 'made', outcome);
     } catch (error) {
       if (!job.signal.aborted) this.#wanted = false;
-      this.#end(job, 'failed', { error, title: scan.title });
+      this.#end(job, 'failed', { error, title });
     }
+  }
+
+  /** What a recipe would leave of the scan as it was opened. @param {Step[]} recipe @param {AbortSignal} signal */
+  async tried(recipe, signal) {
+    const { cloud } = /** @type {Scan} */ (this.whole);
+    return this.#preparing.of(cloud, recipe, { signal });
+  }
+
+  /** What each step of the recipe did. */
+  get reports() {
+    return this.#prepared?.steps ?? [];
+  }
+
+  /** The floor of a scan, by at most so many of its points; undefined where there is none. @param {Scan} scan @param {number} most @param {AbortSignal} signal */
+  async floor({ cloud: { positions, up }, count }, most, signal) {
+    const step = Math.ceil(count / most);
+    const some = positions.slice(0, 3 * Math.ceil(count / step));
+    for (let i = 0; i < some.length; i++) some[i] = positions[3 * step * Math.floor(i / 3) + (i % 3)];
+    const { steps: [{ planes = [] }] } = await this.#preparing.once({ positions: some, up }, [{ step: 'plane', drop: 'none' }], { signal });
+    return planes.find(({ floor }) => floor);
   }
 
   /** Something is being read or made. */
@@ -178,9 +214,9 @@ export class Session extends Emitter {
 
   /** Turns all of the mesh to its other side. */
   flip() {
-    if (!this.#whole?.mesh) return;
+    if (!this.#unturned?.mesh) return;
     const { settings } = this;
-    this.#whole = withMesh(this.#whole, flip(this.#whole.mesh));
+    this.#unturned = withMesh(this.#unturned, flip(this.#unturned.mesh));
     settings.set('flip', !settings.get('flip'));
     this.#asked = JSON.stringify(settings.options(this.target));
     this.turn(this.turned);
@@ -188,10 +224,10 @@ export class Session extends Emitter {
 
   /** Turns over the pieces of these triangles and no others, until the next job. */
   turn(/** @type {number[]} */ triangles) {
-    if (!this.#whole?.mesh) return;
+    if (!this.#unturned?.mesh) return;
     this.turned = triangles;
-    const mesh = triangles.reduce((turned, triangle) => flip(turned, { triangle }), this.#whole.mesh);
-    this.outcome = triangles.length ? withMesh(this.#whole, mesh) : this.#whole;
+    const mesh = triangles.reduce((turned, triangle) => flip(turned, { triangle }), this.#unturned.mesh);
+    this.outcome = triangles.length ? withMesh(this.#unturned, mesh) : this.#unturned;
     this.emit('turned', this.outcome);
   }
 
@@ -227,8 +263,10 @@ export class Session extends Emitter {
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = { ...source, cloud, count, frame, own: { up: cloud.up, unit: cloud.unit } };
-      this.outcome = this.#whole = null;
+      this.scan = this.whole = { ...source, cloud, count, frame, own: { up: cloud.up, unit: cloud.unit } };
+      this.recipe = [];
+      this.#prepared = null;
+      this.outcome = this.#unturned = null;
       this.emit('opened', this.scan);
     } catch (error) {
       this.#end(job, 'failed', { error, ...source });
@@ -237,6 +275,21 @@ export class Session extends Emitter {
       return;
     }
     await this.run();
+  }
+
+  /** Shows what the recipe leaves, unless that is what is shown. @param {Scan} whole @param {AbortSignal} signal @returns {Promise<Scan>} */
+  async #cut(whole, signal) {
+    const onProgress = this.#report(signal);
+    const prepared = this.recipe.length ? await this.#preparing.of(whole.cloud, this.recipe, { signal, onProgress }) : null;
+    if (signal.aborted || prepared === this.#prepared) return /** @type {Scan} */ (this.scan);
+    const scan = prepared ? await leftOf(whole, prepared) : whole;
+    await nextTask();
+    if (signal.aborted) return scan;
+    this.#prepared = prepared;
+    this.scan = scan;
+    this.outcome = this.#unturned = null;
+    this.emit('cut', scan);
+    return scan;
   }
 
   /** @returns {Promise<Outcome>} */
@@ -299,6 +352,13 @@ async function readAny(data, options) {
   const plain = await expandAside(data instanceof Blob ? new Uint8Array(await data.arrayBuffer()) : data);
   options.signal.throwIfAborted();
   return read(plain, options);
+}
+
+/** A scan without what was cut off. @param {Scan} whole @param {Prepared<any>} prepared @returns {Promise<Scan>} */
+async function leftOf(whole, { cloud: left, kept }) {
+  await nextTask();
+  const cloud = { ...left, up: whole.cloud.up, unit: whole.cloud.unit };
+  return { ...whole, cloud, count: kept.length, frame: frameOf(cloud), kept };
 }
 
 /** @param {Outcome} outcome @param {SurfaceMesh} mesh @returns {Outcome} */

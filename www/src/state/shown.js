@@ -1,15 +1,17 @@
 import { Emitter } from './emitter.js';
 
 /**
- * @import { Unit } from 'pointweave'
+ * @import { Step, Unit } from 'pointweave'
  * @import { Axis } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
  * @import { Target } from '../controls/settings.js'
  *
  * Where a scan comes from: a sample, a file beside the page, or one of the person's that the browser keeps under a key.
  * @typedef {{ model: SampleName } | { src: string } | { key: string, columns?: string[] }} From
- * What a person said of a scan or did to its mesh: which way is up, the unit, and triangles whose pieces were turned over.
- * @typedef {{ up?: Axis | [number, number, number], unit?: Unit, turned?: number[] }} Edits
+ * A step of the recipe that tidies a scan, which may be switched off. @typedef {Step & { off?: true }} Listed
+ * What a person said of a scan or did to it: which way is up, the unit, how many times larger it is than its file says, what is cut off, and
+ * triangles of its mesh whose pieces were turned over.
+ * @typedef {{ up?: Axis | [number, number, number], unit?: Unit, scale?: number, recipe?: Listed[], turned?: number[] }} Edits
  * @typedef {{ target: Target | null, values: Record<string, string | number | boolean> }} Chosen
  * @typedef {{ view: string, paint: string }} Looked
  *

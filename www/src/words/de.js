@@ -1,5 +1,8 @@
+import tidy from './de-tidy.js';
+
 /** The page's texts in German, by the English ones. @type {Record<string, string>} */
 export default {
+  ...tidy,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',
   'Skip to the controls': 'Zu den Einstellungen springen',
   'Points in, a light and correct model out': 'Punkte hinein, ein leichtes und korrektes Modell heraus',

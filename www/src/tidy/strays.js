@@ -1,0 +1,39 @@
+import { byId } from '../dom.js';
+import * as format from '../results/format.js';
+import { say } from '../words/say.js';
+import { countOf } from './bench.js';
+
+/** @import { Step } from 'pointweave' */
+/** @import { Bench } from './bench.js' */
+
+/** Removes points that belong to nothing: isolated ones, and those that fly at the edges of things. */
+export class Strays {
+  #bench;
+  #box = byId('tidy-strays', HTMLElement);
+  #kinds = /** @type {['outliers' | 'flying', HTMLInputElement][]} */ ([
+    ['outliers', byId('tidy-outliers', HTMLInputElement)], ['flying', byId('tidy-flying', HTMLInputElement)],
+  ]);
+
+  constructor(/** @type {Bench} */ bench) {
+    this.#bench = bench;
+    for (const [, check] of this.#kinds) check.addEventListener('change', () => this.begin());
+  }
+
+  async begin() {
+    this.#box.hidden = false;
+    const trial = await this.#bench.try(this.steps());
+    if (!trial) return;
+    const count = countOf(trial.gone);
+    this.#bench.mark(trial.gone);
+    this.#bench.say(count ? say('{points} would go.', { points: format.points(count) }) : say('There are no such points in this scan.'), count > 0);
+  }
+
+  end() {
+    this.#box.hidden = true;
+  }
+
+  /** @returns {Step[]} */
+  steps() {
+    return this.#kinds.filter(([, check]) => check.checked).map(([step]) => ({ step }));
+  }
+}
