@@ -249,6 +249,8 @@ export interface Viewer extends EventTarget {
   home(): void;
   /** Along the line of sight to where all is seen. */
   fit(): void;
+  /** Turns around this place from now on, which comes to the middle, as far away as before; `fit` and `home` go back to the whole. */
+  pivot(position: [number, number, number]): void;
   /** Straight at a side, in parallel projection. */
   lookFrom(side: Side): void;
   /**

@@ -49,12 +49,16 @@ export class Aimed extends Moved {
     return found && { layer: side.layer, index: found.index, position: this.unplaced(found.point) };
   }
 
+  /** @param {[number, number, number]} position */
+  pivot(position) {
+    this.orbit.pivot(this.#placed(position), 'program');
+  }
+
   /** @param {[number, number, number]} position @param {[number, number, number]} [normal] */
   project(position, normal) {
-    const { center, diagonal } = this.frameNow;
     const { root } = this.#stage;
     this.camera.updateMatrixWorld();
-    const at = new Vector3(...position).sub(new Vector3(...center)).divideScalar(diagonal).applyQuaternion(root.quaternion);
+    const at = this.#placed(position);
     const facing = normal && new Vector3(...normal).applyQuaternion(root.quaternion).dot(this.camera.position.clone().sub(at)) > 0;
     const { x, y, z } = at.project(this.camera);
     const { width, height, ratio } = this;
@@ -69,6 +73,12 @@ export class Aimed extends Moved {
     const placed = new Matrix4().makeScale(1 / diagonal, 1 / diagonal, 1 / diagonal)
       .multiply(new Matrix4().makeTranslation(x - center[0], y - center[1], z - center[2]));
     return new Matrix4().multiplyMatrices(projectionMatrix, matrixWorldInverse).multiply(this.#stage.root.matrixWorld).multiply(placed).toArray();
+  }
+
+  /** Where a position of the data is before the camera. @param {[number, number, number]} position */
+  #placed(position) {
+    const { center, diagonal } = this.frameNow;
+    return new Vector3(...position).sub(new Vector3(...center)).divideScalar(diagonal).applyQuaternion(this.#stage.root.quaternion);
   }
 
   /** What is drawn at this distance from the left, in CSS pixels. @param {number} x */

@@ -195,6 +195,14 @@ export class Orbit {
     this.#untouched = false;
   }
 
+  /** Turns around another place from now on, from as far away. @param {Vector3} place @param {Mover} by */
+  pivot(place, by) {
+    const to = this.#place;
+    const { radius } = to;
+    this.#fit(to, true, by, place, () => radius);
+    this.#untouched = false;
+  }
+
   /** There is something else to look at. What would be cut off is fitted in, unless somebody has looked around. @param {Float32Array} outline */
   widen(outline) {
     this.#outline = outline;

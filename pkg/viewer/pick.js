@@ -58,13 +58,17 @@ export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
     const [ex, ey, ez, ew] = [eye.elements[2], eye.elements[6], eye.elements[10], eye.elements[14]];
     const { array } = positions;
     for (let i = 0; i < positions.count; i++) {
-      const [px, py, pz] = [array[3 * i], array[3 * i + 1], array[3 * i + 2]];
+      const px = array[3 * i];
+      const py = array[3 * i + 1];
+      const pz = array[3 * i + 2];
       const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
-      if (w <= 0) continue;
-      const dx = ((1 + (m[0] * px + m[4] * py + m[8] * pz + m[12]) / w) * width) / 2 - x;
-      const dy = ((1 - (m[1] * px + m[5] * py + m[9] * pz + m[13]) / w) * height) / 2 - y;
-      const off = Math.hypot(dx, dy) / reach;
-      if (!(off < 1)) continue;
+      const dx = ((w + m[0] * px + m[4] * py + m[8] * pz + m[12]) * width) / 2 - w * x;
+      const dy = ((w - m[1] * px - m[5] * py - m[9] * pz - m[13]) * height) / 2 - w * y;
+      // Most are elsewhere, or behind the camera.
+      const far = w * reach;
+      if (!(dx < far && -dx < far && dy < far && -dy < far)) continue;
+      const off = Math.hypot(dx, dy) / far;
+      if (off >= 1) continue;
       // The frame's diagonal is 1: a place that is off by the whole reach is worth so much depth.
       const cost = WORTH * off - (ex * px + ey * py + ez * pz + ew);
       if (cost >= least) continue;

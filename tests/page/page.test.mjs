@@ -85,7 +85,7 @@ test('one visit', { timeout: 2 * PATIENCE }, async (t) => {
     // Every control is reached with Tab.
     const reached = new Set();
     await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
-    for (let k = 0; k < 30; k++) {
+    for (let k = 0; k < 40; k++) {
       await page.keyboard.press('Tab');
       reached.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.getAttribute('data-sample') || document.activeElement?.getAttribute('name')));
     }

@@ -29,6 +29,7 @@ import { contentsOf } from './results/contents.js';
 import { stepsOf, switchedOff } from './tidy/recipe.js';
 import { Suggestion } from './tidy/suggestion.js';
 import { Tidy } from './tidy/tidy.js';
+import { Measure } from './measure/measure.js';
 import { meaningOf } from './controls/targets.js';
 import { say } from './words/say.js';
 
@@ -53,7 +54,8 @@ export class App {
     if (chosen) this.#side.stop();
     this.#look.choosePiece(chosen);
   });
-  #tidy = new Tidy(this.#session, this.#look, (recipe) => this.#recut(recipe));
+  #tidy = new Tidy(this.#session, this.#look, (recipe) => this.#recut(recipe), () => this.#measure.stop());
+  #measure = new Measure(this.#look, (size) => this.#stand(size), () => this.#tidy.stop());
   #suggestion = new Suggestion(this.#session, () => this.#tidy.start('floor'));
   /** What an address wants to be cut off the scan that it names, or the next that a person opens. @type {Listed[]} */
   #awaited = [];
@@ -165,6 +167,7 @@ export class App {
     const keys = [
       ...this.#look.keys,
       ...this.#steps.keys,
+      { key: 'm', does: say('Measure in the picture'), act: () => this.#measure.toggle() },
       { key: 's', does: say('Save the picture'), act: savePicture },
       { key: 'o', does: say('Open a scan from this device'), act: this.#choose },
       { key: '?', does: say('This list'), act: () => showHelp() },
@@ -202,6 +205,7 @@ export class App {
     const known = same(fromOf(scan), this.#shown.value.scan);
     const edits = known ? this.#shown.value.edits : this.#wanted(scan);
     this.#tidy.opened();
+    this.#measure.stop();
     this.#edit(edits);
     this.#showStanding(scan);
     this.#reset(scan);
@@ -304,7 +308,7 @@ export class App {
   }
 
   /** Which way is up, and the unit: of the picture, the scan and whatever is saved of it. What nobody said is as the file says it. */
-  #edit(/** @type {Edits} */ { up, unit, recipe = [] }) {
+  #edit(/** @type {Edits} */ { up, unit, scale = 1, recipe = [] }) {
     const session = this.#session;
     const { scan, outcome } = session;
     if (!scan) return;
@@ -314,15 +318,17 @@ export class App {
     const { stale } = session;
     session.stand({ up: typeof up === 'string' ? AXES[up] : up ?? scan.own.up, unit: unit ?? scan.own.unit });
     const isTurned = !same(before.up, scan.cloud.up);
-    const isMeasured = before.unit !== scan.cloud.unit;
+    const isMeasured = before.unit !== scan.cloud.unit || scale !== session.scale;
+    session.scale = scale;
+    this.#measure.size = { scale, unit: scan.cloud.unit };
     if (!isTurned && !isMeasured) return;
     if (isTurned) this.#look.stand(up ?? 'auto');
     this.#showStanding(scan);
     if (session.stale !== stale) this.#run.hidden = stale;
     if (isMeasured) {
       this.#showSize(scan);
-      this.#numbers.unit = scan.cloud.unit;
-      this.#look.relabel();
+      this.#numbers.measure(scan.cloud.unit, scale);
+      this.#look.relabel(scale);
     }
     if (outcome) this.#saving.offer(outcome);
   }
@@ -331,11 +337,11 @@ export class App {
   #showStanding(/** @type {Scan} */ { cloud: { up, unit } }) {
     const picked = up !== undefined && !Object.values(AXES).some((axis) => axis.every((x, i) => Math.abs(x - up[i]) < 1e-6));
     const mesh = Boolean(this.#session.outcome?.mesh);
-    this.#standing.show({ up: this.#look.upright, unit }, { picked, mesh, stale: this.#session.stale });
+    this.#standing.show({ up: this.#look.upright, unit, scale: this.#session.scale }, { picked, mesh, stale: this.#session.stale });
   }
 
   #showSize(/** @type {Scan} */ { frame, cloud: { unit } }) {
-    byId('caption-size', HTMLElement).textContent = `${frame.size.map(format.length).join(' × ')} ${unit ?? ''}`.trim();
+    byId('caption-size', HTMLElement).textContent = `${frame.size.map((edge) => format.length(this.#session.scale * edge)).join(' × ')} ${unit ?? ''}`.trim();
   }
 
   get #flipped() {
@@ -384,6 +390,7 @@ export class App {
   #escape() {
     if (this.#message.open) this.#message.hide();
     else if (this.#tidy.open) this.#tidy.stop();
+    else if (this.#measure.open) this.#measure.stop();
     else if (this.#side.choosing) this.#side.stop();
     else if (this.#standing.picking) this.#standing.stop();
     else this.#session.cancel();

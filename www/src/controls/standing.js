@@ -1,10 +1,11 @@
 import { announce, byId, element } from '../dom.js';
+import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
 /** @import { Axis } from 'pointweave/viewer' */
 /** @import { Unit } from 'pointweave' */
 
-/** What is kept with a scan: the axis that is up or the direction, and the unit. @typedef {{ up?: Axis | [number, number, number], unit?: Unit }} Stand */
+/** What is kept with a scan: the axis that is up or the direction, the unit, and the size. @typedef {{ up?: Axis | [number, number, number], unit?: Unit, scale?: number }} Stand */
 
 const SIDES = /** @type {Record<Axis, string>} */ ({ z: 'Z', y: 'Y', x: 'X', '-z': '−Z', '-y': '−Y', '-x': '−X' });
 export const UNITS = { mm: 'millimetres', cm: 'centimetres', m: 'metres', in: 'inches', ft: 'feet', 'us-ft': 'US survey feet', deg: 'degrees' };
@@ -20,6 +21,7 @@ export class Standing {
   #unit = byId('stand-unit', HTMLSelectElement);
   #pick = byId('stand-pick', HTMLButtonElement);
   #stale = byId('stand-stale', HTMLElement);
+  #scale = byId('scale-note', HTMLElement);
   #ask;
 
   /**
@@ -43,6 +45,7 @@ export class Standing {
       changed({ up: /** @type {Axis} */ (this.#side.value) });
       announce(this.#words.textContent ?? '');
     });
+    byId('scale-reset', HTMLButtonElement).addEventListener('click', () => changed({ scale: undefined }));
     this.#unit.addEventListener('change', () => {
       changed({ unit: /** @type {Unit} */ (this.#unit.value) });
       announce(this.#words.textContent ?? '');
@@ -62,11 +65,13 @@ export class Standing {
   }
 
   /**
-   * @param {{ up: Axis, unit?: Unit }} stand as the scan is shown
+   * @param {{ up: Axis, unit?: Unit, scale: number }} stand as the scan is shown
    * @param {{ picked: boolean, mesh: boolean, stale: boolean }} how whether a plane was picked, there is a mesh to pick on, and the result was
    *   made when another side was up
    */
-  show({ up, unit }, { picked, mesh, stale }) {
+  show({ up, unit, scale }, { picked, mesh, stale }) {
+    this.#scale.hidden = scale === 1;
+    byId('scale-words', HTMLElement).textContent = say('Everything is shown and saved {factor} as large as the file says.', { factor: format.times(scale) });
     this.#stale.hidden = !stale;
     this.#pick.hidden = !mesh;
     if (!mesh) this.stop();

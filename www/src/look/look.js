@@ -5,7 +5,7 @@ import { say } from '../words/say.js';
 import { Legend } from './legend.js';
 import { tellWhenLost } from './lost.js';
 import { NAMES, SIDES } from './names.js';
-import { WORDS } from './paint-words.js';
+import { WORDS, size } from './paint-words.js';
 import { Painting } from './painting.js';
 import { PieceChoice } from './piece.js';
 import { Split } from './split.js';
@@ -90,6 +90,10 @@ export class Look {
       followTheme((theme) => (viewer.colors = theme));
       tellWhenLost(viewer);
     }
+    byId('canvas', HTMLCanvasElement).addEventListener('dblclick', ({ offsetX, offsetY }) => {
+      const place = this.placeAt(offsetX, offsetY);
+      if (place) viewer?.pivot(place);
+    });
     byId('fit', HTMLButtonElement).addEventListener('click', () => viewer?.fit());
     byId('up', HTMLButtonElement).addEventListener('click', () => this.#turnUp());
     this.#views.addEventListener('change', (event) => this.#choose(/** @type {Choice} */ (valueOf(event))));
@@ -204,6 +208,11 @@ export class Look {
     this.#viewer.view = 'points';
   }
 
+  /** The place of the scan or of a mesh that is seen there, in CSS pixels; in the coordinates of the file. @param {number} x @param {number} y */
+  placeAt(x, y) {
+    return (this.#viewer?.pick(x, y) ?? this.#viewer?.pickPoint(x, y))?.position ?? null;
+  }
+
   /** Leaves room at the lower edge, in CSS pixels; by default that for the views. @param {number} [height] */
   leave(height = INSETS.bottom) {
     if (this.#viewer) this.#viewer.insets = { bottom: height };
@@ -224,6 +233,7 @@ export class Look {
       { key: 'e', does: say('Edges of the triangles'), act: () => this.#edges.click() },
       { key: 'b', does: say('Boxes of the octree'), act: () => this.#boxes.click() },
       { key: 'f', does: say('Fit the view'), act: () => viewer?.fit() },
+      { key: 'Double click', shown: say('Double click'), does: say('Turn around this place') },
       { key: 'u', does: say('Turn another side up'), act: () => this.#turnUp() },
       { key: 'v', shown: 'V R T', does: say('Look from the front, the right, the top'), act: from('front') },
       { key: 'r', act: from('right') },
@@ -381,8 +391,9 @@ export class Look {
     return this.#viewer?.upright ?? 'y';
   }
 
-  /** The unit has changed: legends say it anew. */
-  relabel() {
+  /** The unit or the size has changed: legends say lengths anew. @param {number} scale */
+  relabel(scale) {
+    size.scale = scale;
     if (!this.#scan) return;
     this.#offerPaints();
     this.#show(this.#view);

@@ -5,6 +5,9 @@ import { say } from '../words/say.js';
 const { names, density, error, sharp } = PAINT_WORDS;
 const inUnit = (/** @type {import('pointweave').Unit | undefined} */ unit) => unit ?? say('file units');
 
+/** How many times larger the scan is than its file says. */
+export const size = { scale: 1 };
+
 /**
  * Paints and their legends, in the page's words and numbers.
  * @type {import('pointweave/viewer').PaintWords}
@@ -24,6 +27,6 @@ export const WORDS = {
     note: (share, layer) => (layer === 'mesh' ? say('{share} of the vertices are on edges, corners and tight curves', { share })
       : say('{share} of the points are on edges, corners and tight curves', { share })),
   },
-  length: format.length,
+  length: (value) => format.length(size.scale * value),
   percent: format.percent,
 };

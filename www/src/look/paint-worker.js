@@ -1,10 +1,10 @@
 /**
  * Makes colours that cost a pass over all points, in a thread of its own. Arrays come in first, each once: `{ id, array }`. Then
- * `{ job, name, layer, subject, live }`, where `{ id }` stands for an array; those that are not `live` are forgotten. What goes out is
+ * `{ job, name, layer, subject, live, scale }`, where `{ id }` stands for an array; those that are not `live` are forgotten. What goes out is
  * `{}` when all is ready, and `{ job, colors, legend, texts }`: a legend's function cannot be sent, so its three texts are.
  */
 import { paintOf } from 'pointweave/viewer';
-import { WORDS } from './paint-words.js';
+import { WORDS, size } from './paint-words.js';
 
 /** @type {Map<number, import('./painting.js').Numbers>} */
 const arrays = new Map();
@@ -15,6 +15,7 @@ addEventListener('message', ({ data }) => {
     return;
   }
   const { job, name, layer, subject, live } = data;
+  size.scale = data.scale;
   for (const id of arrays.keys()) if (!live.includes(id)) arrays.delete(id);
   const { colors, legend } = paintOf(name, layer, filled(subject), WORDS);
   if (legend && 'words' in legend) {

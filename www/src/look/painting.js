@@ -1,3 +1,5 @@
+import { size } from './paint-words.js';
+
 /**
  * @import { Paint, PaintName, Scale, Subject } from 'pointweave/viewer'
  * @typedef {Float32Array | Float64Array | Uint32Array | Uint16Array | Uint8Array} Numbers
@@ -64,7 +66,7 @@ export class Painting {
     for (const array of this.#sent.keys()) if (!live.has(array)) this.#sent.delete(array);
     const job = ++this.#last;
     const made = new Promise((/** @type {(made: any) => void} */ done) => this.#waiting.set(job, done));
-    worker.postMessage({ job, name, layer, subject: plain, live: [...live.values()] });
+    worker.postMessage({ job, name, layer, subject: plain, live: [...live.values()], scale: size.scale });
     const { colors, legend, texts } = await made;
     if (!texts) return { colors, legend };
     const words = new Map(texts);

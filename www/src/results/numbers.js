@@ -20,6 +20,7 @@ export class Numbers {
   #json = '';
   /** @type {import('pointweave').Unit | undefined} */
   #unit;
+  #scale = 1;
 
   constructor() {
     const copy = byId('copy-json', HTMLButtonElement);
@@ -28,7 +29,7 @@ export class Numbers {
 
   /** A new scan: only its size and its place are known. */
   opened(/** @type {Scan} */ { count, cloud: { origin, unit } }) {
-    this.unit = unit;
+    this.measure(unit, this.#scale);
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
     this.#set('inputPoints', count, format.count);
     this.#doubt.hidden = true;
@@ -43,9 +44,10 @@ export class Numbers {
     this.stale();
   }
 
-  /** What lengths are said in; those that are shown are said anew. */
-  set unit(/** @type {import('pointweave').Unit | undefined} */ unit) {
+  /** What lengths are said in, and how many times larger than in the file; those that are shown are said anew. @param {import('pointweave').Unit | undefined} unit @param {number} scale */
+  measure(unit, scale) {
     this.#unit = unit;
+    this.#scale = scale;
     byId('error-unit', HTMLElement).textContent = say(unit ? 'length' : 'file units');
     for (const name of ['errorMean', 'errorRms', 'errorMax']) {
       const value = this.#box.querySelector(`data[data-number="${name}"]`)?.getAttribute('value');
@@ -54,7 +56,7 @@ export class Numbers {
   }
 
   #length(/** @type {number} */ value) {
-    return `${format.length(value)}${this.#unit ? ` ${this.#unit}` : ''}`;
+    return `${format.length(this.#scale * value)}${this.#unit ? ` ${this.#unit}` : ''}`;
   }
 
   /** What is shown belongs to settings that have been changed since. */

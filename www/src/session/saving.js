@@ -1,4 +1,5 @@
 import { announce, byId, element } from '../dom.js';
+import { scaled } from '../measure/lengths.js';
 import { compressAside } from './compressing.js';
 import { saveFile } from './files.js';
 import * as format from '../results/format.js';
@@ -110,7 +111,7 @@ export class Saving {
     this.#close.hidden = true;
     this.#prints = false;
     if (!mesh) return;
-    const solid = solidOf(mesh);
+    const solid = solidOf(scaled(mesh, this.#session.scale));
     const { ready, words } = printingWords(solid, mesh.unit);
     this.#prints = ready;
     this.#printing.textContent = words;

@@ -3,6 +3,7 @@ import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
 import { Preparing } from './preparing.js';
+import { scaled } from '../measure/lengths.js';
 import { SAMPLES } from '../controls/samples.js';
 import { Settings, TARGETS } from '../controls/settings.js';
 import { Emitter } from '../state/emitter.js';
@@ -47,6 +48,8 @@ export class Session extends Emitter {
   whole = null;
   /** What is cut off before anything else is done. @type {Step[]} */
   recipe = [];
+  /** What is saved is so many times as large as the file says. */
+  scale = 1;
   #preparing = new Preparing();
   /** What the recipe left; null where there is none. @type {Prepared<any> | null} */
   #prepared = null;
@@ -245,7 +248,7 @@ export class Session extends Emitter {
   async file(what, options) {
     const result = this.outcome?.[what];
     if (!result) throw new Error(`there is no ${what} to write yet`);
-    return write(result, options);
+    return write(scaled(result, this.scale), options);
   }
 
   /**

@@ -1,17 +1,23 @@
 import { byId } from '../dom.js';
 import { say } from '../words/say.js';
-import { marked } from './tint.js';
+import { tinted } from './tint.js';
 
 /**
  * @import { PointCloud, Step, StepReport } from 'pointweave'
  * @import { Look } from '../look/look.js'
  * @import { Scan, Session } from '../session/session.js'
+ * @import { Tint } from './tint.js'
  *
- * What steps would do: what each saw, and which of the points that are shown would go (1) or stay (0).
- * @typedef {{ reports: StepReport[], gone: Uint8Array }} Trial
+ * Writes for the shown points from … to … which are meant: 1, the others stay 0. @typedef {(mask: Uint8Array, from: number, to: number) => void} Fill
+ * What steps would do: what each saw, and which points would go. @typedef {{ reports: StepReport[], gone: Fill }} Trial
  * A tool of the page. `begin` shows what it would do, `steps` says it as steps of a recipe: `cut` is the second way, where a tool has two.
  * @typedef {{ begin: () => void, end: () => void, steps: (cut: boolean) => Step[] }} Tool
  */
+
+/** Points that are coloured without a look at the clock. */
+const SLICE = 1 << 15;
+/** A task that takes longer, in milliseconds, lets others come between. */
+const LONG = 10;
 
 /** What a tool works with: the scan, a look at what steps would do, colours, and words over the picture. */
 export class Bench {
@@ -23,7 +29,12 @@ export class Bench {
   #buttons = [byId('tidy-apply', HTMLButtonElement), byId('tidy-cut', HTMLButtonElement)];
   /** @type {AbortController | null} */
   #trial = null;
-  #frame = 0;
+  /** The colours that were asked for last. @type {object | null} */
+  #wanted = null;
+  /** Ends with the colours that are being made. @type {Promise<unknown>} */
+  #making = Promise.resolve();
+  /** Goes up when a tool is put away. */
+  #age = 0;
 
   /** @param {Session} session @param {Look} look @param {() => Step[]} before steps that are switched on */
   constructor(session, look, before) {
@@ -41,37 +52,69 @@ export class Bench {
     return this.#look.aim;
   }
 
+  /** The index in the file of a point that is shown. */
+  get indexOf() {
+    const { kept } = this.scan;
+    return (/** @type {number} */ i) => (kept ? kept[i] : i);
+  }
+
   /** What the steps would do after those of the recipe; null where another look has begun, or they would leave nothing. @param {Step[]} steps @returns {Promise<Trial | null>} */
   async try(steps) {
-    this.stop();
+    this.#trial?.abort();
     const { signal } = (this.#trial = new AbortController());
     const before = this.#before();
     this.say(say('Looking…'), false);
     try {
       const { labels, steps: all } = await this.#session.tried([...before, ...steps], signal);
       if (signal.aborted) return null;
-      return { reports: all.slice(before.length), gone: this.shown(labels).map((by) => (by > before.length ? 1 : 0)) };
+      const { indexOf } = this;
+      /** @type {Fill} */
+      const gone = (mask, from, to) => {
+        for (let i = from; i < to; i++) if (labels[indexOf(i)] > before.length) mask[i] = 1;
+      };
+      return { reports: all.slice(before.length), gone };
     } catch (error) {
       if (!signal.aborted) this.say(refusal(error), false);
       return null;
     }
   }
 
-  /** Of values of all points of the file those of the points that are shown. @template {Uint8Array | Uint32Array} A @param {A} values @returns {A} */
-  shown(values) {
-    const { kept } = this.scan;
-    return kept ? /** @type {A} */ (new /** @type {any} */ (values.constructor)(kept.length).map((/** @type {number} */ _, /** @type {number} */ i) => values[kept[i]])) : values;
+  /**
+   * Colours the points that are meant, in short tasks, and says how many they are; null where that is not wanted any more. Of what is
+   * asked for meanwhile, the last is done next.
+   * @param {Fill} fill
+   * @param {Tint} [tint] by default that of what would go
+   * @returns {Promise<number | null>}
+   */
+  async show(fill, tint = tinted(this.scan.cloud, 'gone')) {
+    const wanted = (this.#wanted = {});
+    const age = this.#age;
+    await this.#making;
+    if (wanted !== this.#wanted || age !== this.#age) return null;
+    const made = this.#color(fill, tint);
+    this.#making = made;
+    const { colors, count } = await made;
+    if (age !== this.#age) return null;
+    this.#look.mark(colors);
+    return count;
   }
 
-  /** Tints points that would go, or those that are chosen. @param {ArrayLike<number>} mask @param {'gone' | 'chosen'} [what] */
-  mark(mask, what = 'gone') {
-    this.color((cloud) => marked(cloud, mask, what));
-  }
-
-  /** Colours the points before the next picture. @param {(cloud: PointCloud) => Uint8Array} colors */
-  color(colors) {
-    cancelAnimationFrame(this.#frame);
-    this.#frame = requestAnimationFrame(() => this.#look.mark(colors(this.scan.cloud)));
+  /** @param {Fill} fill @param {Tint} tint */
+  async #color(fill, tint) {
+    const age = this.#age;
+    const all = this.scan.count;
+    const [mask, colors] = [new Uint8Array(all), new Uint8Array(3 * all)];
+    let [count, since] = [0, performance.now()];
+    for (let from = 0; from < all && age === this.#age; from += SLICE) {
+      const to = Math.min(all, from + SLICE);
+      fill(mask, from, to);
+      for (let i = from; i < to; i++) count += mask[i];
+      tint(colors, mask, from, to);
+      if (performance.now() - since < LONG) continue;
+      await new Promise((next) => setTimeout(next));
+      since = performance.now();
+    }
+    return { colors, count };
   }
 
   /** Says what would happen, and whether that can be done. @param {string} words @param {boolean} ready */
@@ -83,7 +126,7 @@ export class Bench {
   /** Nothing is looked at any more. */
   stop() {
     this.#trial?.abort();
-    cancelAnimationFrame(this.#frame);
+    this.#age++;
   }
 }
 
@@ -92,14 +135,11 @@ export function refusal(error) {
   return error?.code === 'bad-option' ? say('Nothing would be left.') : String(error?.message ?? error);
 }
 
-/** How many of a mask. @param {Uint8Array} mask */
-export function countOf(mask) {
-  return mask.reduce((sum, value) => sum + value, 0);
-}
-
-/** For each label 1 where it is one of these, else 0. @param {Uint32Array} labels @param {Set<number>} these @param {number} count of labels that there are */
-export function among(labels, these, count) {
+/** What is labelled with one of these numbers, of so many. @param {(point: number) => number} labelOf @param {Set<number>} these @param {number} count @returns {Fill} */
+export function among(labelOf, these, count) {
   const known = new Uint8Array(count);
   for (const label of these) known[label] = 1;
-  return new Uint8Array(labels.length).map((_, i) => known[labels[i]] ?? 0);
+  return (mask, from, to) => {
+    for (let i = from; i < to; i++) mask[i] = known[labelOf(i)] ?? 0;
+  };
 }

@@ -1,7 +1,6 @@
 import { byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
-import { countOf } from './bench.js';
 import { rounded } from './recipe.js';
 import { axesOf, outside, placeIn, quaternionOf, withFace } from './turning.js';
 
@@ -65,13 +64,13 @@ export class Crop {
   }
 
   /** Of the box as it is now. */
-  #show() {
+  async #show() {
     this.#place();
-    const gone = outside(this.#bench.scan.cloud.positions, this.#now);
-    const inside = gone.length - countOf(gone);
-    this.#bench.mark(gone);
-    const words = say('{share} of the points are inside of the box.', { share: format.percent(inside / gone.length) });
-    this.#bench.say(words, inside > 0 && inside < gone.length);
+    const { count, cloud: { positions } } = this.#bench.scan;
+    const going = await this.#bench.show(outside(positions, this.#now));
+    if (going === null) return;
+    const words = say('{share} of the points are inside of the box.', { share: format.percent(1 - going / count) });
+    this.#bench.say(words, going > 0 && going < count);
   }
 
   /** Numbers in the fields. */

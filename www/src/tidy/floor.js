@@ -1,11 +1,11 @@
 import { byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
-import { among, countOf } from './bench.js';
+import { among } from './bench.js';
 import { rounded } from './recipe.js';
 
 /** @import { PlaneReport, Step } from 'pointweave' */
-/** @import { Bench } from './bench.js' */
+/** @import { Bench, Fill } from './bench.js' */
 
 /** The slider's end: a share of the diagonal above the plane. */
 const HIGHEST = 0.1;
@@ -19,10 +19,10 @@ export class Floor {
   #row = byId('tidy-height-row', HTMLElement);
   /** @type {PlaneReport[]} */
   #planes = [];
-  /** Of the points that are shown. @type {Uint32Array} */
-  #planeOf = new Uint32Array();
-  /** What goes with the floor. @type {Uint8Array} */
-  #floor = new Uint8Array();
+  /** Of a point that is shown. @type {(point: number) => number} */
+  #planeOf = () => 0;
+  /** What goes with the floor. @type {Fill} */
+  #floor = () => {};
   /** Numbers of planes. @type {Set<number>} */
   #chosen = new Set();
 
@@ -43,7 +43,8 @@ export class Floor {
     const report = trial?.reports[0];
     if (!trial || !report) return;
     this.#planes = report.planes ?? [];
-    this.#planeOf = this.#bench.shown(report.labels ?? new Uint32Array());
+    const [{ labels = new Uint32Array() }, { indexOf }] = [report, this.#bench];
+    this.#planeOf = (point) => labels[indexOf(point)];
     this.#floor = trial.gone;
     this.#chosen = new Set(this.#planes.flatMap(({ dropped }, i) => (dropped ? [i] : [])));
     this.#list.replaceChildren(...this.#planes.map((plane, i) => this.#option(plane, i)));
@@ -83,19 +84,20 @@ export class Floor {
     return HIGHEST * (this.#height.valueAsNumber / 100) ** 2 * this.#bench.scan.frame.diagonal;
   }
 
-  #show() {
-    const gone = this.#isFloor ? this.#floor.slice() : among(this.#planeOf, this.#chosen, this.#planes.length);
+  async #show() {
+    const planes = this.#isFloor ? this.#floor : among(this.#planeOf, this.#chosen, this.#planes.length);
     const cut = this.#cut;
     const { cloud: { positions, unit }, count } = this.#bench.scan;
-    if (cut) {
-      const { point, normal: [x, y, z] } = cut;
-      for (let i = 0; i < gone.length; i++) {
-        if (x * (positions[3 * i] - point[0]) + y * (positions[3 * i + 1] - point[1]) + z * (positions[3 * i + 2] - point[2]) < 0) gone[i] = 1;
-      }
-    }
     this.#height.setAttribute('aria-valuetext', `${format.length(this.#above)} ${unit ?? ''}`.trim());
-    this.#bench.mark(gone);
-    const going = countOf(gone);
+    const going = await this.#bench.show((mask, from, to) => {
+      planes(mask, from, to);
+      if (!cut) return;
+      const { point, normal: [x, y, z] } = cut;
+      for (let i = from; i < to; i++) {
+        if (x * (positions[3 * i] - point[0]) + y * (positions[3 * i + 1] - point[1]) + z * (positions[3 * i + 2] - point[2]) < 0) mask[i] = 1;
+      }
+    });
+    if (going === null) return;
     if (!this.#planes.length) this.#bench.say(say('There is no large flat plane in this scan.'), false);
     else if (!going) this.#bench.say(say('No plane carries the rest, so none is taken for the floor. Choose one from the list if you know better.'), false);
     else if (going === count) this.#bench.say(say('Nothing would be left.'), false);

@@ -1,7 +1,7 @@
 import { announce, byId, element } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
-import { among, countOf } from './bench.js';
+import { among } from './bench.js';
 import { Still } from '../look/still.js';
 import { pieceColor, pieced } from './tint.js';
 
@@ -21,8 +21,8 @@ export class Pieces {
   #click;
   /** @type {PieceReport[]} */
   #pieces = [];
-  /** Of the points that are shown. @type {Uint32Array} */
-  #pieceOf = new Uint32Array();
+  /** Of a point that is shown. @type {(point: number) => number} */
+  #pieceOf = () => 0;
   #kept = new Set([0]);
   /** Of pieces, listed or not. */
   #count = 0;
@@ -40,7 +40,8 @@ export class Pieces {
     const report = trial?.reports[0];
     if (!report) return;
     this.#pieces = report.pieces ?? [];
-    this.#pieceOf = this.#bench.shown(report.labels ?? new Uint32Array());
+    const [{ labels = new Uint32Array() }, { indexOf }] = [report, this.#bench];
+    this.#pieceOf = (point) => labels[indexOf(point)];
     this.#kept = new Set([0]);
     this.#list.replaceChildren(...this.#pieces.slice(0, LISTED).map((piece, i) => this.#option(piece, i)));
     this.#count = Number(report.count);
@@ -71,7 +72,7 @@ export class Pieces {
   #clicked(/** @type {number} */ x, /** @type {number} */ y) {
     const found = this.#bench.aim?.pickPoint(x, y);
     if (!found) return;
-    const piece = this.#pieceOf[found.index];
+    const piece = this.#pieceOf(found.index);
     this.#toggle(piece);
     announce(this.#kept.has(piece) ? say('Piece {number} stays', { number: piece + 1 }) : say('Piece {number} goes', { number: piece + 1 }));
   }
@@ -83,11 +84,10 @@ export class Pieces {
     this.#show();
   }
 
-  #show() {
-    const stays = among(this.#pieceOf, this.#kept, this.#count);
-    this.#bench.color((cloud) => pieced(cloud, this.#pieceOf, stays));
-    const { count } = this.#bench.scan;
-    const staying = countOf(stays);
+  async #show() {
+    const { count, cloud } = this.#bench.scan;
+    const staying = await this.#bench.show(among(this.#pieceOf, this.#kept, this.#count), pieced(cloud, this.#pieceOf));
+    if (staying === null) return;
     if (this.#pieces.length === 1) this.#bench.say(say('All of it is one piece.'), false);
     else if (staying === 0) this.#bench.say(say('Nothing would be left.'), false);
     else this.#bench.say(say('{share} of the points stay. Click a piece to keep or drop it.', { share: format.percent(staying / count) }), staying < count);

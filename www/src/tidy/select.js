@@ -1,9 +1,9 @@
 import { byId } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
-import { countOf } from './bench.js';
 import { cornersOf, coveredBy, insideOf, joinedShape, simplified, without } from './shapes.js';
 import { rounded } from './recipe.js';
+import { tinted } from './tint.js';
 
 /** @import { Step } from 'pointweave' */
 /** @import { Bench } from './bench.js' */
@@ -140,16 +140,15 @@ export class Select {
     this.#outline.setAttribute('d', [...rings, this.#line].filter(({ length }) => length > 1).map((ring) => `M${ring.map((corner) => corner.map((value) => value.toFixed(1)).join(' ')).join('L')}Z`).join(''));
   }
 
-  #show() {
-    const { cloud: { positions } } = this.#bench.scan;
+  async #show() {
+    const { cloud, count: all } = this.#bench.scan;
     if (!this.#shape.length) {
-      this.#bench.mark([], 'chosen');
+      this.#bench.show(() => {});
       const how = this.#kind === 'lasso' ? say('Draw around points in the picture.') : say('Drag over points in the picture.');
       return this.#bench.say(matchMedia('(hover: none)').matches ? how : `${how} ${say('Shift adds to the selection, Alt takes away.')}`, false);
     }
-    const chosen = insideOf(positions, coveredBy(this.#shape), this.#camera);
-    const count = countOf(chosen);
-    this.#bench.mark(chosen, 'chosen');
-    this.#bench.say(say('{points} selected, with what lies behind.', { points: format.points(count) }), count > 0 && count < chosen.length);
+    const count = await this.#bench.show(insideOf(cloud.positions, coveredBy(this.#shape), this.#camera), tinted(cloud, 'chosen'));
+    if (count === null) return;
+    this.#bench.say(say('{points} selected, with what lies behind.', { points: format.points(count) }), count > 0 && count < all);
   }
 }

@@ -64,16 +64,16 @@ export function coveredBy(shape) {
   return pen.getImageData(0, 0, FINE, FINE).data;
 }
 
-/** For each point 1 where the camera sees it on a covered pixel, else 0. @param {ArrayLike<number>} positions @param {Uint8ClampedArray} covered @param {number[]} m product of projection and view, by columns */
+/** The points that a camera sees on a covered pixel. @param {ArrayLike<number>} positions @param {Uint8ClampedArray} covered @param {number[]} m product of projection and view, by columns @returns {import('./bench.js').Fill} */
 export function insideOf(positions, covered, m) {
-  const mask = new Uint8Array(positions.length / 3);
-  for (let i = 0; i < mask.length; i++) {
-    const [x, y, z] = [positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]];
-    const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-    if (w <= 0) continue;
-    const column = Math.floor((((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) * FINE) / 2);
-    const row = Math.floor(((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) * FINE) / 2);
-    if (column >= 0 && column < FINE && row >= 0 && row < FINE && covered[4 * (FINE * row + column) + 3] > 127) mask[i] = 1;
-  }
-  return mask;
+  return (mask, from, to) => {
+    for (let i = from; i < to; i++) {
+      const [x, y, z] = [positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]];
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      if (w <= 0) continue;
+      const column = Math.floor((((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) * FINE) / 2);
+      const row = Math.floor(((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) * FINE) / 2);
+      if (column >= 0 && column < FINE && row >= 0 && row < FINE && covered[4 * (FINE * row + column) + 3] > 127) mask[i] = 1;
+    }
+  };
 }

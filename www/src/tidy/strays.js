@@ -1,7 +1,6 @@
 import { byId } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
-import { countOf } from './bench.js';
 
 /** @import { Step } from 'pointweave' */
 /** @import { Bench } from './bench.js' */
@@ -23,8 +22,8 @@ export class Strays {
     this.#box.hidden = false;
     const trial = await this.#bench.try(this.steps());
     if (!trial) return;
-    const count = countOf(trial.gone);
-    this.#bench.mark(trial.gone);
+    const count = await this.#bench.show(trial.gone);
+    if (count === null) return;
     this.#bench.say(count ? say('{points} would go.', { points: format.points(count) }) : say('There are no such points in this scan.'), count > 0);
   }
 

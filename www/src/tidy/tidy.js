@@ -40,6 +40,7 @@ export class Tidy {
   #session;
   #look;
   #changed;
+  #began;
   #bench;
   /** @type {Record<ToolName, Tool>} */
   #tools;
@@ -53,8 +54,10 @@ export class Tidy {
    * @param {Session} session
    * @param {Look} look
    * @param {(recipe: Listed[]) => void} changed  what a person made of the recipe
+   * @param {() => void} began  a tool was taken up
    */
-  constructor(session, look, changed) {
+  constructor(session, look, changed, began) {
+    this.#began = began;
     this.#session = session;
     this.#look = look;
     this.#changed = changed;
@@ -96,6 +99,7 @@ export class Tidy {
     this.#list.show(this.#recipe, this.#session.reports);
     if (!this.#on) return;
     const tool = this.#tools[this.#on];
+    this.#bench.stop();
     tool.end();
     tool.begin();
   }
@@ -104,6 +108,7 @@ export class Tidy {
   start(/** @type {ToolName} */ name) {
     if (!this.#session.scan) return;
     this.stop();
+    this.#began();
     this.#on = name;
     this.#root.dataset.tidy = name;
     for (const button of this.#buttons) button.ariaPressed = String(button.dataset.tool === name);
@@ -115,7 +120,7 @@ export class Tidy {
     this.#bar.focus({ preventScroll: true });
     byId('stage', HTMLElement).scrollIntoView({ block: 'nearest' });
     this.#bench.say('', false);
-    this.#bench.mark([]);
+    this.#bench.show(() => {});
     this.#tools[name].begin();
     this.#look.leave(this.#bar.offsetHeight + MARGIN);
   }

@@ -37,16 +37,16 @@ export function axesOf(degrees) {
   ];
 }
 
-/** For each point 1 where the box does not hold it, else 0. @param {ArrayLike<number>} positions @param {Box} box */
+/** The points that the box does not hold. @param {ArrayLike<number>} positions @param {Box} box @returns {import('./bench.js').Fill} */
 export function outside(positions, { center, half, turn }) {
   const [[a, b, c], [d, e, f], [g, h, i]] = axesOf(turn);
-  const mask = new Uint8Array(positions.length / 3);
-  for (let k = 0; k < mask.length; k++) {
-    const [x, y, z] = [positions[3 * k] - center[0], positions[3 * k + 1] - center[1], positions[3 * k + 2] - center[2]];
-    const inside = Math.abs(a * x + b * y + c * z) <= half[0] && Math.abs(d * x + e * y + f * z) <= half[1] && Math.abs(g * x + h * y + i * z) <= half[2];
-    mask[k] = inside ? 0 : 1;
-  }
-  return mask;
+  return (mask, from, to) => {
+    for (let k = from; k < to; k++) {
+      const [x, y, z] = [positions[3 * k] - center[0], positions[3 * k + 1] - center[1], positions[3 * k + 2] - center[2]];
+      const inside = Math.abs(a * x + b * y + c * z) <= half[0] && Math.abs(d * x + e * y + f * z) <= half[1] && Math.abs(g * x + h * y + i * z) <= half[2];
+      if (!inside) mask[k] = 1;
+    }
+  };
 }
 
 /** A place of the box, in shares of its half edges from its middle. @param {Box} box @param {Triple} share @returns {Triple} */

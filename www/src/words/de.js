@@ -74,7 +74,6 @@ export default {
   'For your own page, beside the saved GLB and the folder of the npm package pointweave': 'Für Ihre eigene Seite, neben dem gespeicherten GLB und dem Ordner des npm-Pakets pointweave',
   'A poster is a picture that is there before the model is.': 'Ein Vorschaubild ist da, bevor das Modell geladen ist.',
   'Save a poster of what is shown': 'Vorschaubild der jetzigen Ansicht speichern',
-  'Side up and unit': 'Oben und Einheit',
   'Which way is up': 'Welche Richtung ist oben',
   'Pick the side that is up': 'Die Seite wählen, die oben ist',
   'Which way is up helps to tell which side of the surface is out. This result was made before: make the mesh again to use it.': 'Welche Richtung oben ist, hilft zu erkennen, welche Seite der Fläche außen liegt. Dieses Ergebnis ist älter: Erzeugen Sie das Netz neu, um die Angabe zu nutzen.',

@@ -74,7 +74,6 @@ export default {
   'For your own page, beside the saved GLB and the folder of the npm package pointweave': 'Pour votre propre page, à côté du GLB enregistré et du dossier du paquet npm pointweave',
   'A poster is a picture that is there before the model is.': 'Une affiche est une image présente avant le modèle.',
   'Save a poster of what is shown': 'Enregistrer une affiche de la vue',
-  'Side up and unit': 'Haut et unité',
   'Which way is up': 'Quelle direction est en haut',
   'Pick the side that is up': 'Choisir le côté du haut',
   'Which way is up helps to tell which side of the surface is out. This result was made before: make the mesh again to use it.': 'La direction du haut aide à savoir quel côté de la surface est dehors. Ce résultat date d’avant : recréez le maillage pour en tenir compte.',
