@@ -143,6 +143,41 @@ test('sides, up, zoom, first look; who moved is said', async () => {
   assert.equal(difference(still, await picture()), 0, 'nobody moves what is not interactive');
 });
 
+test('which point is meant by a place, what the camera makes of a position, and another place to turn around', async () => {
+  const { act, faults } = await open();
+  const found = await act(() => {
+    // On the near side, and far away from zero on a map.
+    const origin = [1e6, 2e6, 0];
+    viewer.show({ ...cloud, origin });
+    viewer.draw();
+    const { width, height } = document.querySelector('canvas').getBoundingClientRect();
+    return [true, false].map((parallel) => {
+      viewer.parallel = parallel;
+      viewer.draw();
+      return [1, 555, 1681].map((index) => {
+        const local = [0, 1, 2].map((k) => cloud.positions[3 * index + k]);
+        const place = viewer.project(local.map((value, k) => value + origin[k]));
+        const m = viewer.sight(origin);
+        const [x, y, w] = [0, 1, 3].map((row) => m[row] * local[0] + m[row + 4] * local[1] + m[row + 8] * local[2] + m[row + 12]);
+        const off = Math.hypot(((1 + x / w) * width) / 2 - place.x, ((1 - y / w) * height) / 2 - place.y);
+        return { index, off, picked: viewer.pickPoint(place.x, place.y, 3) };
+      });
+    });
+  });
+  for (const { index, off, picked } of found.flat()) {
+    assert.ok(off < 0.02, `sight and project agree: ${off}`);
+    assert.ok(index % 2 === 0 || picked.index === index, `${picked.index} for ${index}`);
+    assert.equal(picked.layer, 'points');
+  }
+  assert.equal(await act(() => viewer.pickPoint(2, 2)), null);
+  const middle = await act(() => {
+    viewer.pivot([1e6 + 2, 2e6 + 1, 0.5]);
+    return new Promise((then) => setTimeout(() => then(viewer.stance.target), 600));
+  });
+  [1e6 + 2, 2e6 + 1, 0.5].forEach((value, k) => assert.ok(Math.abs(middle[k] - value) < 1e-3, middle.join(' ')));
+  assert.deepEqual(faults, []);
+});
+
 test('it is as large as its canvas, however that has its size', async () => {
   const size = () => [document.querySelector('canvas').width, document.querySelector('canvas').clientWidth, document.querySelector('canvas').clientHeight];
   const shown = await open('<canvas width="320" height="240" aria-label="A box"></canvas>', {}, { deviceScaleFactor: 2 });
