@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3, dvec3};
 use pointweave::Cloud;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::octree::Octree;
-use pointweave::samples::{Model, NOISE, Sample, sample, sample_with_noise};
+use pointweave::samples::{Model, NOISE, Sample, desk, sample, sample_with_noise};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
@@ -117,6 +117,28 @@ fn the_bits_are_the_same_on_every_machine() {
         let found = checksum(&sample(model, 3_000, 9));
         assert_eq!(found, expected, "{model:?}: {found:#x}");
     }
+    let found = checksum(&desk(3_000, 9, NOISE));
+    assert_eq!(found, 0x5800_7a91_f34d_a7c4, "desk: {found:#x}");
+}
+
+#[test]
+fn on_the_desk_are_duck_table_block_and_strays() {
+    for count in [0, 1, 777, 6_000] {
+        let scan = desk(count, 3, NOISE);
+        assert_eq!(scan.positions.len(), 3 * count);
+        assert_eq!(scan.colors.len(), 3 * count);
+        assert_eq!(scan.normals.len(), 3 * count);
+    }
+    let points = positions(&desk(6_000, 3, NOISE));
+    let share = |is: &dyn Fn(&DVec3) -> bool| {
+        points.iter().filter(|p| is(p)).count() as f64 / points.len() as f64
+    };
+    let on_table = |p: &DVec3| (p.y + 2.25).abs() < 0.05;
+    let on_duck = |p: &DVec3| first_order(Model::Duck, *p).abs() < 0.05 && !on_table(p);
+    assert!((0.42..0.48).contains(&share(&on_table)));
+    assert!((0.46..0.50).contains(&share(&on_duck)));
+    let beneath = |p: &DVec3| on_table(p) && Model::Duck.distance(*p) < 0.0;
+    assert_eq!(share(&beneath), 0.0, "what stands on it hides the table");
 }
 
 #[test]

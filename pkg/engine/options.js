@@ -39,7 +39,7 @@ const WRITE = {
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
 
-const MODEL = choice('duck', 'pig', 'part');
+const MODEL = choice('duck', 'pig', 'part', 'desk');
 
 const SAMPLE = {
   count: integer(1, 10_000_000),

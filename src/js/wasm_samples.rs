@@ -20,18 +20,20 @@ extern "C" {
     fn noise(this: &SampleOptions) -> Option<f64>;
 }
 
-/// [`samples::sample_with_noise`] of `{ model, count, seed, noise }`: a cloud with colours.
+/// [`samples::sample_with_noise`], or [`samples::desk`], of `{ model, count, seed, noise }`: a cloud with colours.
 #[wasm_bindgen]
 pub fn sample(options: &SampleOptions) -> JsResult {
     let name = options.model();
-    let model = Model::from_name(&name)
-        .ok_or_else(|| Error::bad_option("model", "duck, pig or part", &name))?;
-    let count = options
-        .count()
-        .map_or(model.default_points(), |n| n as usize);
+    let count = |usual: usize| options.count().map_or(usual, |n| n as usize);
     let seed = options.seed().unwrap_or_default() as u64;
     let noise = options.noise().unwrap_or(samples::NOISE);
-    let scan = samples::sample_with_noise(model, count, seed, noise);
+    let scan = match Model::from_name(&name) {
+        Some(model) => {
+            samples::sample_with_noise(model, count(model.default_points()), seed, noise)
+        }
+        None if name == "desk" => samples::desk(count(samples::DESK_POINTS), seed, noise),
+        None => return Err(Error::bad_option("model", "duck, pig, part or desk", &name).into()),
+    };
     object([
         ("positions", Float32Array::from(&scan.positions[..]).into()),
         ("colors", Uint8Array::from(&scan.colors[..]).into()),

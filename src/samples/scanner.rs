@@ -75,7 +75,7 @@ pub(super) fn scan(model: Model, count: usize, noise: f64, seed: u64) -> Vec<Hit
 }
 
 /// Takes `count` of the hits at random, in order.
-fn thin(hits: Vec<Hit>, count: usize, seed: u64) -> Vec<Hit> {
+pub(super) fn thin(hits: Vec<Hit>, count: usize, seed: u64) -> Vec<Hit> {
     let mut rng = Rng::new(seed ^ 0x7468_696e);
     let mut left = hits.len();
     let mut wanted = count;

@@ -39,7 +39,7 @@ const take = async (site, tool, words) => {
   await site.page.click(`[data-tool="${tool}"]`);
   return told(site, words);
 };
-const left = ({ page }) => page.evaluate(() => Number(/^[\d,]+/.exec(document.querySelector('#caption-detail').textContent)[0].replace(/,/g, '')));
+const left = ({ page }) => page.evaluate(() => Number(/\d[\d,]*/.exec(document.querySelector('#caption-detail').textContent)[0].replace(/,/g, '')));
 const recipe = ({ page }) => JSON.parse(new URLSearchParams(new URL(page.url()).hash.slice(1)).get('prepare') ?? '[]');
 const steps = ({ page }) => page.$$eval('#tidy-steps .check > span:first-of-type', (rows) => rows.map((row) => row.textContent));
 
@@ -234,5 +234,25 @@ test('on a phone: fingers draw and cut; a length that is known makes all of it a
   assert.ok(Math.abs(radius - 25) < 0.7, `${radius}`);
   await page.click('#scale-reset');
   assert.ok(await page.isHidden('#scale-note'));
+  assert.deepEqual(site.faults, []);
+});
+
+test('a sample as one gets it: floor, strays and the main piece leave the duck alone', { timeout: PATIENCE }, async (t) => {
+  const site = await (await start(t)).open({}, undefined, '#sample=desk&count=3000');
+  const { page } = site;
+  await site.made();
+  await page.waitForSelector('#suggestion:not([hidden])');
+  await page.click('#suggestion-yes');
+  await told(site, /would go/);
+  await site.remade(() => page.click('#tidy-apply'));
+  for (const [tool, words] of [['strays', /would go/], ['pieces', /stay/]]) {
+    await take(site, tool, words);
+    await site.remade(() => page.click('#tidy-apply'));
+  }
+  const duck = 0.482 * 60_000;
+  const all = await left(site);
+  assert.ok(all > 0.98 * duck && all < 1.05 * duck, `${all} of ${duck}`);
+  assert.match(page.url(), /sample=desk/);
+  await site.pictureOf('mesh', 'desk');
   assert.deepEqual(site.faults, []);
 });

@@ -59,7 +59,7 @@ test('the builds agree byte for byte', async (t) => {
 test('samples are the same in both builds, and have the points that were asked for', async (t) => {
   const single = await engineFor(t, { threads: 1 });
   const pool = await engineFor(t, { threads: 2 });
-  for (const model of ['duck', 'pig', 'part']) {
+  for (const model of ['duck', 'pig', 'part', 'desk']) {
     const scan = await single.sample(model, { count: 5000, seed: 9 });
     assert.equal(scan.positions.length, 15_000);
     assert.equal(scan.colors.length, 15_000);

@@ -14,7 +14,7 @@ import { MessageCard } from './results/messages.js';
 import { offerPictures } from './session/pictures.js';
 import { Numbers } from './results/numbers.js';
 import { ProgressBar } from './results/progress.js';
-import { isSample } from './controls/samples.js';
+import { MESSY, isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
 import { Session } from './session/session.js';
 import { ColumnChooser } from './session/column-chooser.js';
@@ -213,7 +213,7 @@ export class App {
     this.#offerColumns(scan);
     this.#note(known ? {} : { scan: fromOf(scan), edits }, { step: !known });
     this.#keepFile(known ? undefined : scan.given);
-    if (isSample(scan.model ?? null) || edits.recipe?.length) this.#suggestion.hide();
+    if ((scan.model && !MESSY.includes(scan.model)) || edits.recipe?.length) this.#suggestion.hide();
     else this.#suggestion.opened(scan);
   }
 

@@ -110,4 +110,7 @@ export default {
   'Angle at the second place: {angle}°': 'Winkel an der zweiten Stelle: {angle}°',
   'Double click': 'Doppelklick',
   'Turn around this place': 'Um diese Stelle drehen',
+  'Duck on a table': 'Ente auf einem Tisch',
+  'Table': 'Tisch',
+  'As one gets it: on a table, with shadows, strays and uneven light': 'Wie man ihn bekommt: auf einem Tisch, mit Schatten, Streupunkten und ungleichem Licht',
 };

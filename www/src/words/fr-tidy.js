@@ -110,4 +110,7 @@ export default {
   'Angle at the second place: {angle}°': 'Angle au deuxième endroit : {angle}°',
   'Double click': 'Double clic',
   'Turn around this place': 'Tourner autour de cet endroit',
+  'Duck on a table': 'Canard sur une table',
+  'Table': 'Table',
+  'As one gets it: on a table, with shadows, strays and uneven light': 'Comme on l’obtient : sur une table, avec ombres, points épars et lumière inégale',
 };
