@@ -5,7 +5,6 @@
 //! 3. Flying pixels behind the duck's rim on one line of sight, and strays anywhere.
 //! 4. Light from one side, which falls off over the table.
 
-use super::Sample;
 use super::model::Model;
 use super::scanner;
 use crate::base::rng::Rng;
@@ -32,8 +31,8 @@ const TRIES: usize = 400;
 /// A point, its true normal, and its colour before there is light.
 type Seen = (DVec3, DVec3, [f64; 3]);
 
-/// Scans the duck on its table: exactly `points` points, with this noise, as [`super::sample_with_noise`] has it.
-pub fn desk(points: usize, seed: u64, noise: f64) -> Sample {
+/// Exactly `points` points with their true normals and colours; `noise` is a fraction of the duck's diagonal.
+pub(super) fn scan(points: usize, seed: u64, noise: f64) -> Vec<(DVec3, DVec3, [u8; 3])> {
     let mut rng = Rng::new(seed ^ 0x6465_736b);
     let (low, high) = Model::Duck.bounds();
     let sigma = noise * low.distance(high);
@@ -46,12 +45,9 @@ pub fn desk(points: usize, seed: u64, noise: f64) -> Sample {
     while seen.len() < points {
         seen.push(stray(&mut rng));
     }
-    let triples = |v: &DVec3| v.as_vec3().to_array();
-    Sample {
-        positions: seen.iter().flat_map(|(p, _, _)| triples(p)).collect(),
-        colors: seen.iter().flat_map(lit).collect(),
-        normals: seen.iter().flat_map(|(_, n, _)| triples(n)).collect(),
-    }
+    seen.into_iter()
+        .map(|one| (one.0, one.1, lit(&one)))
+        .collect()
 }
 
 /// So many more of those that there are.

@@ -20,7 +20,7 @@ mod toys;
 
 use glam::DVec3;
 
-pub use desk::{DESK_POINTS, desk};
+pub use desk::DESK_POINTS;
 pub use model::Model;
 
 /// Standard deviation of the range that [`sample`] takes, as a fraction of the diagonal: a good hand-held scanner.
@@ -50,5 +50,17 @@ pub fn sample_with_noise(model: Model, points: usize, seed: u64, noise: f64) -> 
         positions: hits.iter().flat_map(|hit| triples(hit.position)).collect(),
         colors: hits.iter().flat_map(|hit| model.color(hit.truth)).collect(),
         normals: hits.iter().flat_map(|hit| triples(hit.normal)).collect(),
+    }
+}
+
+/// The duck on a table, with a block, shadows, a hole, strays and uneven light: exactly `points` points, with noise as
+/// [`sample_with_noise`] has it. Strays have any normals.
+pub fn desk(points: usize, seed: u64, noise: f64) -> Sample {
+    let seen = desk::scan(points, seed, noise);
+    let triples = |v: &DVec3| v.as_vec3().to_array();
+    Sample {
+        positions: seen.iter().flat_map(|(p, _, _)| triples(p)).collect(),
+        colors: seen.iter().flat_map(|(_, _, color)| *color).collect(),
+        normals: seen.iter().flat_map(|(_, n, _)| triples(n)).collect(),
     }
 }
