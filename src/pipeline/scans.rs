@@ -16,8 +16,10 @@ pub struct ScanReport {
     /// Whether its points are in the result.
     pub placed: bool,
     /// From its own frame to that of the first placed scan: 16 numbers by columns, as WebGL has it; `None` where it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub pose: Option<[f64; 16]>,
     /// What its red, green and blue were multiplied by; `None` where nothing told.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub gain: Option<[f64; 3]>,
     /// Why it is left out; else empty.
     pub reason: String,
