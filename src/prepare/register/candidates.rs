@@ -9,6 +9,7 @@ use super::describe::{Look, turned};
 use super::pose::{Pair, Pose};
 use super::samples::Samples;
 use crate::base::par;
+use crate::base::sort_keys::{key, ranked, sort_by_key, unpack};
 use glam::{DVec3, Vec3};
 
 /// Matches that are compared with each other, at most.
@@ -52,7 +53,7 @@ pub(crate) fn candidates(a: Described, b: Described) -> Vec<Pose> {
         .into_iter()
         .filter_map(|seed| refined(&matches, &agreements.group(seed), cell))
         .collect();
-    found.sort_by_key(|&(held, _)| std::cmp::Reverse(held));
+    sort_by_key(&mut found, |&(held, _)| !(held as u32));
     let ball = a.0.ball();
     let mut kept: Vec<Pose> = Vec::new();
     for (_, pose) in found {
@@ -66,17 +67,19 @@ pub(crate) fn candidates(a: Described, b: Described) -> Vec<Pose> {
 
 /// Of every point of either scan the one of the other that looks most like it.
 fn matches((a, a_looks): Described, (b, b_looks): Described) -> Vec<Match> {
-    let there = nearest((a, a_looks), (b, b_looks));
-    let back = nearest((b, b_looks), (a, a_looks));
-    let there = there.iter().map(|&(i, j, sign, far)| (far, i, j, sign));
-    let back = back.iter().map(|&(j, i, sign, far)| (far, i, j, sign));
-    let mut all: Vec<(f32, usize, usize, f32)> = there.chain(back).collect();
-    all.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    // Found from either side, it stands there twice.
-    all.dedup_by_key(|&mut (_, i, j, _)| (i, j));
+    let mut all = nearest((a, a_looks), (b, b_looks));
+    let mut partner = vec![usize::MAX; a.len()];
+    for &(i, j, ..) in &all {
+        partner[i] = j;
+    }
+    let back = nearest((b, b_looks), (a, a_looks)).into_iter();
+    // What was found from either side stands there already.
+    let others = back.filter(|&(j, i, ..)| partner[i] != j);
+    all.extend(others.map(|(j, i, sign, far)| (i, j, sign, far)));
+    sort_by_key(&mut all, |&(.., far)| key(far));
     all.truncate(MOST);
     all.iter()
-        .map(|&(_, i, j, sign)| Match {
+        .map(|&(i, j, sign, _)| Match {
             from: (a.tree.points[i], a.normals[i]),
             to: (b.tree.points[j], b.normals[j] * sign),
         })
@@ -156,20 +159,18 @@ impl Agreements {
             common.sum::<u64>()
         };
         let shared = par::map(self.rows.len(), || (), shared);
-        let mut order: Vec<usize> = (0..shared.len()).filter(|&i| shared[i] > 0).collect();
-        order.sort_by_key(|&i| std::cmp::Reverse(shared[i]));
-        order.truncate(SEEDS);
-        order
+        let order = ranked(shared.iter().map(|&x| !(x.min(u32::MAX.into()) as u32)));
+        let order = order.into_iter().map(|packed| unpack(packed).1 as usize);
+        order.filter(|&i| shared[i] > 0).take(SEEDS).collect()
     }
 
     /// A match and those that agree with it and, as it does, with most others.
     fn group(&self, seed: usize) -> Vec<usize> {
-        let mut near: Vec<(u32, usize)> = self
-            .neighbors(seed)
-            .map(|j| (self.common(seed, j), j))
-            .collect();
-        near.sort_by_key(|&(common, _)| std::cmp::Reverse(common));
-        let near = near.into_iter().take(GROUP).map(|(_, j)| j);
+        let all: Vec<usize> = self.neighbors(seed).collect();
+        let near = ranked(all.iter().map(|&j| !self.common(seed, j))).into_iter();
+        let near = near
+            .take(GROUP)
+            .map(|packed| all[unpack(packed).1 as usize]);
         std::iter::once(seed).chain(near).collect()
     }
 }

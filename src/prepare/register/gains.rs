@@ -37,13 +37,14 @@ pub(crate) fn gains(
             let q = b_colors[samples[b].callers[j] as usize];
             for channel in 0..3 {
                 if TOLD.contains(&p[channel]) && TOLD.contains(&q[channel]) {
-                    logs[channel].push(libm::log(f64::from(q[channel]) / f64::from(p[channel])));
+                    let ratio = f32::from(q[channel]) / f32::from(p[channel]);
+                    logs[channel].push(libm::logf(ratio));
                 }
             }
         }
         let medians = logs.map(|mut logs| {
-            logs.sort_unstable_by(f64::total_cmp);
-            (logs.len() >= ENOUGH).then(|| (logs[logs.len() / 2], logs.len() as f64))
+            logs.sort_unstable_by(f32::total_cmp);
+            (logs.len() >= ENOUGH).then(|| (f64::from(logs[logs.len() / 2]), logs.len() as f64))
         });
         ratios.push((a, b, medians));
     }

@@ -26,6 +26,7 @@ mod views;
 
 use crate::base::error::Result;
 use crate::base::progress::{Part, Progress, Stage};
+use crate::base::sort_keys::{key, sort_by_key};
 use crate::cloud::Cloud;
 use agreement::{Agreement, LEAST};
 use align::{NARROW, SHARP, WIDE, align};
@@ -142,7 +143,9 @@ fn aligned(
 /// The pairs by which scans are aligned. What overlaps little does so where both were seen at a slant and are least true: a pair counts
 /// when its overlap is at least half of the best that one of its scans has, or when nothing else holds the two together.
 fn links(scans: usize, mut overlaps: Vec<((usize, usize), Agreement)>) -> Vec<(usize, usize)> {
-    overlaps.sort_by(|x, y| y.1.overlap().total_cmp(&x.1.overlap()));
+    sort_by_key(&mut overlaps, |(_, agreement)| {
+        !key(agreement.overlap() as f32)
+    });
     let mut best = vec![0.0f64; scans];
     for &((a, b), agreement) in &overlaps {
         for k in [a, b] {

@@ -8,7 +8,7 @@ use crate::cloud::morton::interleave;
 use crate::cloud::octree::Octree;
 use crate::features::noise::Scales;
 use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
+use std::f32::consts::PI;
 
 /// Points of a scan that are looked at, at most.
 const MOST: usize = 250_000;
@@ -20,7 +20,7 @@ const ENOUGH: usize = 6;
 const FLAT: f64 = 0.5;
 /// Radius in which a point has neighbours all around, in cells, and the widest gap between two of these.
 const RIM: f32 = 2.5;
-const GAP: f64 = 100.0 / 180.0 * PI;
+const GAP: f32 = 100.0 / 180.0 * PI;
 
 /// The length of cells from which the search for another starts, its steps, and the least one that keys have room for.
 const START: f32 = 1.0 / 64.0;
@@ -184,14 +184,14 @@ fn is_rim(tree: &Octree, k: usize, normal: Vec3, radius: f32) -> bool {
     let at = tree.points[k];
     let u = normal.any_orthonormal_vector();
     let v = normal.cross(u);
-    let mut turns: Vec<f64> = Vec::new();
+    let mut turns: Vec<f32> = Vec::new();
     within(tree, at, radius, |i| {
         let d = tree.points[i] - at;
         if i != k {
-            turns.push(libm::atan2(d.dot(v).into(), d.dot(u).into()));
+            turns.push(libm::atan2f(d.dot(v), d.dot(u)));
         }
     });
-    turns.sort_unstable_by(f64::total_cmp);
+    turns.sort_unstable_by(f32::total_cmp);
     let around = turns.first().map(|first| first + 2.0 * PI);
     let next = turns.iter().skip(1).copied().chain(around);
     turns.len() < 3 || turns.iter().zip(next).any(|(a, b)| b - a > GAP)

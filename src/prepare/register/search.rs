@@ -11,6 +11,7 @@ use super::views::{View, Views};
 use crate::base::error::Result;
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
+use crate::base::sort_keys::{key, ranked, sort_by_key, unpack};
 
 /// Candidates that are refined.
 const REFINED: usize = 6;
@@ -100,12 +101,11 @@ fn distinct(
     let (a, b) = (&views.all[from], &views.all[to]);
     let rate = |k: usize, _: &mut ()| Agreement::of(&a.coarse, &candidates[k], &b.coarse).weight();
     let rates = par::map(candidates.len(), || (), rate);
-    let mut order: Vec<usize> = (0..candidates.len()).collect();
-    order.sort_by(|&i, &j| rates[j].total_cmp(&rates[i]));
-    order.truncate(REFINED);
+    let order = ranked(rates.iter().map(|&rate| !key(rate as f32)));
+    let order = order.into_iter().map(|packed| unpack(packed).1 as usize);
     let mut found: Vec<(Motion, Agreement)> = Vec::new();
     let (ball, apart) = (a.fine.ball(), SAME * f64::from(a.fine.cell));
-    for k in order {
+    for k in order.take(REFINED) {
         let pose = coarse(candidates[k], a, b);
         let is_new = |other: &(Motion, Agreement)| other.0.pose.apart(&pose, ball) > apart;
         let is_likely = Agreement::of(&a.coarse, &pose, &b.coarse).quality() >= LIKELY;
@@ -115,7 +115,7 @@ fn distinct(
             found.push((Motion { from, to, pose }, agreement));
         }
     }
-    found.sort_by(|x, y| y.1.weight().total_cmp(&x.1.weight()));
+    sort_by_key(&mut found, |(_, agreement)| !key(agreement.weight() as f32));
     found
 }
 
