@@ -17,9 +17,8 @@ const ALONG: f32 = 0.85;
 
 /// Samples that a scan needs.
 pub(crate) const LEAST: usize = 40;
-/// What a trusted motion has: samples on the other scan, overlap, quality and hold. Pairs of different things of one size reached 165 samples,
-/// an overlap of 0.22 and a quality of 0.87, no two of these at once; of the raw bunny's true pairs with an overlap from 0.25 on none had
-/// a quality under 0.9.
+/// What a trusted motion has: samples on the other scan, overlap, quality and hold. Of 110 pairs of different things of one size none came
+/// nearer than an overlap of 0.22 with a quality of 0.87; the raw bunny's true pairs that overlap by as much as this have 0.85 to 0.99.
 const TRUSTED: (usize, f64, f64, f64) = (100, 0.25, 0.85, 0.004);
 /// Overlap and quality of one that is trusted before all others are known.
 const FIRM: (f64, f64) = (0.35, 0.9);

@@ -1,8 +1,8 @@
 //! Scans that lie in frames of their own are brought into one, and what does not fit is left out.
 //!
 //! 1. [`samples`], [`views`]: of every scan points some way apart with their normals, coarse to fine. Normals have no sign here.
-//! 2. [`search`]: scans that fit as they lie stay together. For others [`describe`] and [`candidates`] give motions on which points
-//!    that look alike agree; [`align`] refines each, and [`agreement`] says whether to trust it: enough of the one lies on the
+//! 2. [`mod@search`]: scans that fit as they lie stay together. For others [`describe`] and [`candidates`] give motions on which points
+//!    that look alike agree; [`mod@align`] refines each, and [`agreement`] says whether to trust it: enough of the one lies on the
 //!    other, next to nothing stands against it, and what lies on it holds it in all six ways to move.
 //! 3. [`groups`]: trusted pairs make groups. A motion that one pair of scans does not carry may be carried by all pairs of two groups.
 //! 4. The largest group is aligned as a whole, over all pairs that overlap. [`gains`] evens its colours out.
@@ -10,8 +10,8 @@
 //! **In**: clouds, each in its own unit frame. **Out**: [`Registered`]: for each a [`Pose`] to the frame of the first that is placed, or the
 //! reason why it has none.
 //!
-//! **Cost**: a sort of the points of each scan, and for two scans that are searched about as much as for reducing 100,000 points, whatever
-//! their size. Of scans in a round that overlap with the next, as many pairs are searched as there are scans.
+//! **Cost**: a sort of the points of each scan, and some 0.2 s of one core for two scans that are searched, whatever their size. Of scans in
+//! a round each of which overlaps with the next, about as many pairs are searched as there are scans; of scans that fit none, all.
 
 mod agreement;
 mod align;
