@@ -7,6 +7,11 @@ import type { PointCloud } from './types.js';
  * a region, by default `true`, keeps what is inside, `false` drops it. A step that would leave no point is the error `bad-option`.
  */
 export type Step =
+  /**
+   * Brings several clouds, each in a frame of its own, into the frame of the first that is placed, and evens their colours out. Clouds that
+   * fit as they lie stay. One that fits no other is dropped; the report says why. It is the first step of a recipe for an array of clouds.
+   */
+  | { step: 'register' }
   /** Drops isolated points: stray returns, and clumps of up to eight far from the rest. */
   | { step: 'outliers' }
   /** Drops flying pixels: points beside a surface, and, where the cloud has viewpoints, between two on one line of sight. */
@@ -65,6 +70,10 @@ export interface StepReport {
   count?: number;
   /** Of `plane` and `pieces`, for each point that was given: the number of its plane or piece, or 0xffffffff. */
   labels?: Uint32Array;
+  /** Of `register`: what became of each cloud, in their order. */
+  scans?: ScanReport[];
+  /** Of `register`: the pairs of placed clouds that overlap. */
+  pairs?: PairReport[];
   /** Why it did less than a person may expect; else empty. */
   reason: string;
   ms: number;
@@ -101,4 +110,32 @@ export interface PieceReport extends PartReport {
   min: [number, number, number];
   max: [number, number, number];
   kept: boolean;
+}
+
+/** What became of a cloud that was to be registered. */
+export interface ScanReport {
+  points: number;
+  /** Its points are in the result. */
+  placed: boolean;
+  /**
+   * From its own frame to that of the first placed cloud, as 16 numbers by columns; none where it is left out. Where the clouds' origins
+   * differ, both are told from the first cloud's.
+   */
+  pose?: number[];
+  /** What its red, green and blue were multiplied by; none where nothing told. */
+  gain?: [number, number, number];
+  /** Why it is left out; else empty. */
+  reason: string;
+}
+
+/** How two placed clouds lie on each other. */
+export interface PairReport {
+  /** Their numbers in the array, from 0. */
+  scans: [number, number];
+  /** Share of a cloud's surface that lies on the other: that of the cloud of which it is more. */
+  overlap: number;
+  /** Root of the mean square of their distances across the surface, in the clouds' unit. */
+  rms: number;
+  /** The pair alone would be enough to trust its place. */
+  trusted: boolean;
 }

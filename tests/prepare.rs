@@ -2,15 +2,20 @@
 
 #[path = "common/staged.rs"]
 mod staged;
+#[path = "common/views.rs"]
+mod views;
 
+use glam::DVec3;
 use pointweave::base::progress::Silent;
-use pointweave::pipeline::{Prepared, prepare};
+use pointweave::pipeline::{Prepared, prepare, prepare_scans};
 use pointweave::prepare::planes::Drop;
 use pointweave::prepare::recipe::Step;
 use pointweave::prepare::regions::Region;
+use pointweave::prepare::register::{Placed, register};
 use pointweave::samples::{Model, sample};
 use pointweave::{Cloud, Error, Stage as Part};
 use staged::{Body, Scan, Stage, Staged, largest, plane, tidy};
+use views::{View, Views, errors};
 
 fn cloud_of(scan: &Scan) -> Cloud {
     Cloud::from_f64(&scan.positions()).unwrap()
@@ -219,4 +224,105 @@ fn the_same_scan_has_the_same_labels_in_any_order() {
     let same = once.dropped_by.iter().zip(back.dropped_by.iter().rev());
     let other = same.filter(|(a, b)| a != b).count();
     assert!(other <= 3, "{other} of {}", scan.points.len());
+}
+
+const PIG: Views = Views {
+    model: Model::Pig,
+    points: 9000,
+    noise: 5e-4,
+    turn: 50.0,
+    seed: 1,
+};
+
+#[test]
+fn views_in_frames_of_their_own_are_put_together_and_another_thing_is_left_out() {
+    let mut views = PIG.first(4);
+    let part = Views {
+        model: Model::Part,
+        ..PIG
+    };
+    views.extend(part.first(1));
+    let truth: Vec<_> = views.iter().map(|view| view.truth).collect();
+    let clouds: Vec<Cloud> = views.into_iter().map(|view| view.cloud).collect();
+    let found = register(&clouds, &mut Silent).unwrap();
+    let (low, high) = Model::Pig.bounds();
+    let poses: Vec<_> = found.scans.iter().map(|scan| scan.pose).collect();
+    let errors = errors(&clouds[..4], &truth[..4], &poses[..4], low.distance(high));
+    for error in &errors {
+        assert!(error.is_some_and(|error| error < 2e-3), "{errors:?}");
+    }
+    assert_eq!(
+        poses[0].unwrap(),
+        pointweave::prepare::register::Pose::IDENTITY
+    );
+    let Placed { pose, reason, .. } = &found.scans[4];
+    assert!(
+        pose.is_none() && reason.contains("another scan"),
+        "{reason}"
+    );
+    let next = found
+        .pairs
+        .iter()
+        .find(|pair| pair.scans == [0, 1])
+        .unwrap();
+    assert!(
+        next.trusted && next.overlap > 0.3 && next.rms < 0.05,
+        "{next:?}"
+    );
+    // The lights of the views were 1, 0.92, 0.84 and 1.
+    let gain = |k: usize| found.scans[k].gain.unwrap()[0];
+    assert!(
+        (gain(1) / gain(0) - 1.0 / 0.92).abs() < 0.02,
+        "{} {}",
+        gain(0),
+        gain(1)
+    );
+    assert!((gain(3) / gain(0) - 1.0).abs() < 0.02);
+
+    // As a recipe: the part goes, and what is told of points is told of those that were given.
+    let steps = [Step::Register, Step::Outliers, largest()];
+    let prepared = prepare_scans(&clouds, &steps, &mut Silent).unwrap();
+    let before: usize = clouds[..4].iter().map(Cloud::len).sum();
+    assert_eq!(prepared.dropped_by.len(), before + clouds[4].len());
+    assert!(prepared.dropped_by[before..].iter().all(|&by| by == 1));
+    let kept = prepared.dropped_by[..before].iter().filter(|&&by| by == 0);
+    assert!(kept.count() > before * 98 / 100);
+    let report = &prepared.steps[0];
+    let scans = report.scans.as_ref().unwrap();
+    assert_eq!((report.kept, report.dropped), (before, clouds[4].len()));
+    assert!(scans[3].placed && !scans[4].placed && report.reason.contains("1 scan"));
+    // 16 numbers by columns take a point of the last view to where it is in the first's frame.
+    let p = DVec3::from_slice(&clouds[3].positions_f64()[..3]);
+    let m = scans[3].pose.unwrap();
+    let at = [0, 1, 2].map(|a| m[a] * p.x + m[4 + a] * p.y + m[8 + a] * p.z + m[12 + a]);
+    assert!(poses[3].unwrap().at(p).distance(DVec3::from_array(at)) < 1e-9);
+}
+
+#[test]
+fn scans_of_one_frame_stay_where_they_are_and_register_comes_first() {
+    let placed = |view: &View| {
+        let positions = view.cloud.positions_f64();
+        let each = positions.chunks_exact(3);
+        let at = each.flat_map(|p| view.truth.at(DVec3::from_slice(p)).to_array());
+        Cloud::from_f64(&at.collect::<Vec<f64>>()).unwrap()
+    };
+    let clouds: Vec<Cloud> = PIG.first(2).iter().map(placed).collect();
+    let found = register(&clouds, &mut Silent).unwrap();
+    for scan in &found.scans {
+        let pose = scan.pose.unwrap();
+        for p in [DVec3::ZERO, DVec3::X * 9.0, DVec3::Y * 6.0] {
+            assert!(pose.at(p).distance(p) < 0.06, "{pose:?}");
+        }
+    }
+    let alone = prepare(&clouds[0], &[Step::Register], &mut Silent).unwrap();
+    assert!(alone.kept.len() == clouds[0].len() && alone.steps[0].reason.contains("one scan"));
+    match prepare_scans(&clouds, &[Step::Outliers, Step::Register], &mut Silent) {
+        Err(Error::BadOption { option, .. }) => assert_eq!(option, "prepare[1].step"),
+        other => panic!("{other:?}"),
+    }
+    let joined = prepare_scans(&clouds, &[], &mut Silent).unwrap();
+    assert_eq!(joined.kept.len(), clouds[0].len() + clouds[1].len());
+    let mut stop = |stage: Part, fraction: f32| stage != Part::Prepare || fraction < 0.1;
+    let stopped = prepare_scans(&clouds, &[Step::Register], &mut stop);
+    assert_eq!(stopped.unwrap_err(), Error::Cancelled);
 }

@@ -7,7 +7,7 @@ import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { READ_FLAGS, readSaid } from './read-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { checkFormat, FORMATS, formatOf } from './formats.js';
-import { PREPARE_FLAGS, isEmpty, preparation } from './prepare-flags.js';
+import { MERGE_FLAGS, PREPARE_FLAGS, isEmpty, preparation } from './prepare-flags.js';
 import { UsageError } from './usage.js';
 
 /** @import { Command } from './flags.js' */
@@ -73,6 +73,7 @@ function optionsOf(command) {
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
     ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...PREPARE_FLAGS }),
+    ...(command === 'merge' && MERGE_FLAGS),
     ...parserOptions(flagsOf(command)),
   };
 }

@@ -2,7 +2,7 @@
 import { CLOUD_ROWS } from './cloud-flags.js';
 import { FORMATS } from './formats.js';
 import { flagsOf } from './flags.js';
-import { PREPARE_ROWS } from './prepare-flags.js';
+import { MERGE_ROWS, PREPARE_ROWS } from './prepare-flags.js';
 import { READ_ROWS } from './read-flags.js';
 
 /** @import { Command, Flag } from './flags.js' */
@@ -13,7 +13,7 @@ const DOES = {
   reconstruct: 'a mesh through the points',
   inspect: 'count, bounds, spacing, noise',
   prepare: 'the object alone: without floor, strays and other things',
-  merge: 'scans of one frame as one',
+  merge: 'several scans as one',
 };
 
 const COMMON = [
@@ -57,7 +57,7 @@ export function help(command) {
   const output = command === 'inspect' ? '' : ` -o result.${command === 'reconstruct' ? 'glb' : 'ply'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
   const works = command !== 'inspect';
-  const listed = [...sections, ['Before', works ? PREPARE_ROWS : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
+  const listed = [...sections, ['Before', works ? [...(command === 'merge' ? MERGE_ROWS : []), ...PREPARE_ROWS] : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   const several = `  pointweave ${command} a.ply b.ply${command === 'inspect' ? '' : ' --out-dir results'}\n  - reads standard input`;
   const usage = command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} scan.ply${output}\n${several}`;

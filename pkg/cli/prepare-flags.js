@@ -15,6 +15,12 @@ export const PREPARE_FLAGS = /** @type {const} */ ({
   'keep-largest': { type: 'boolean' },
 });
 
+/** Of `merge` alone. */
+export const MERGE_FLAGS = /** @type {const} */ ({ register: { type: 'boolean' } });
+
+/** @type {string[][]} */
+export const MERGE_ROWS = [['--register', 'the scans lie in frames of their own: put them together first; what fits no other is left out']];
+
 /** For the help, in the order in which they are done. */
 export const PREPARE_ROWS = [
   ['--prepare FILE', 'the steps of a recipe, a JSON array as prepare of the package takes it'],
@@ -25,7 +31,7 @@ export const PREPARE_ROWS = [
   ['--keep-largest', 'keep the largest connected piece'],
 ];
 
-/** @typedef {{ recipe?: string, steps: Step[] }} Preparation the file of a recipe, and the steps after it */
+/** @typedef {{ register: boolean, recipe?: string, steps: Step[] }} Preparation whether scans are registered before all else, the file of a recipe, and the steps after it */
 
 /**
  * @param {Record<string, any>} values of `parseArgs`
@@ -39,15 +45,17 @@ export function preparation(values) {
   if (values['drop-planes']) steps.push({ step: 'plane', drop: 'all' });
   if (values['drop-floor']) steps.push({ step: 'plane', drop: 'floor' });
   if (values['keep-largest']) steps.push({ step: 'pieces', keep: 'largest' });
-  return { recipe: values.prepare, steps };
+  return { register: Boolean(values.register), recipe: values.prepare, steps };
 }
 
 /** Whether there is anything to do. @param {Preparation} preparation */
 export const isEmpty = ({ recipe, steps }) => recipe === undefined && steps.length === 0;
 
 /** All steps. @param {Preparation} preparation @returns {Promise<Step[]>} */
-export async function stepsOf({ recipe, steps }) {
-  return recipe === undefined ? steps : [...(await recipeOf(recipe)), ...steps];
+export async function stepsOf({ register, recipe, steps }) {
+  /** @type {Step[]} */
+  const first = register ? [{ step: 'register' }] : [];
+  return [...first, ...(recipe === undefined ? [] : await recipeOf(recipe)), ...steps];
 }
 
 /** @param {string} file */

@@ -32,13 +32,20 @@ export function reportLine(report, { skipped }) {
  */
 export function stepsLine(count, steps) {
   const left = steps.at(-1)?.kept ?? count;
-  const did = steps.map(({ step, dropped }) => `${step} −${whole(dropped)}`);
+  const did = steps.map(({ step, dropped, scans }) => (scans ? `${scans.filter(({ placed }) => placed).length} of ${scans.length} scans placed` : `${step} −${whole(dropped)}`));
   return `${whole(count)} → ${[pointsOf(left), ...did].join(', ')}`;
 }
 
-/** Steps that did less than may be expected. @param {StepReport[]} steps */
-export function reasonLines(steps) {
-  return steps.filter(({ reason }) => reason).map(({ step, reason }) => `${step}: ${reason}`);
+/**
+ * Steps that did less than may be expected, and scans that were left out.
+ * @param {StepReport[]} steps
+ * @param {string[]} [inputs] the files of the scans
+ */
+export function reasonLines(steps, inputs = []) {
+  return steps.flatMap(({ step, reason, scans = [] }) => {
+    const out = scans.flatMap((scan, i) => (scan.placed ? [] : [`${inputs[i] ?? `scan ${i}`} is left out: ${scan.reason}`]));
+    return reason ? [`${step}: ${reason}`, ...out] : out;
+  });
 }
 
 /** @param {ReduceReport | SurfaceReport} report */

@@ -101,7 +101,7 @@ async function perform(engine, task, job, watch) {
     const prepared = await engine.prepare(clouds.map((each) => withSaid(each, said)), steps, { ...watch, transfer: true });
     await save(engine, task, output, prepared.cloud, watch);
     const report = { inputPoints: count, outputPoints: prepared.kept.length, steps: told(prepared.steps) };
-    return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps) };
+    return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps, inputs) };
   }
   const prepare = steps.length > 0 ? { prepare: steps } : {};
   const result = await engine[command](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });

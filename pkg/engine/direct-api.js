@@ -5,12 +5,12 @@
 import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
-import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
-import { checkRecipe, lookedAt, preparedOf } from './preparing.js';
+import { checkRecipe, lookedAt, preparedArgument, preparedOf } from './preparing.js';
 import { badOption } from './rules.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
@@ -101,8 +101,9 @@ async function withModule({ platform: { compile, loadBindings }, wasmUrl }, buil
 async function prepare(place, cloud, steps, options) {
   const { transfer, ...watch } = checkOptions('prepare', options);
   watch.signal?.throwIfAborted();
-  const given = cloudsArgument(cloud, transfer);
-  const args = [lookedAt(given), checkRecipe(steps)];
+  const recipe = checkRecipe(steps);
+  const given = preparedArgument(cloud, recipe, transfer);
+  const args = [lookedAt(given), recipe];
   return withModule(place, 'prepare', watch, async (ask) => preparedOf(given, await ask({ call: 'prepare', args })));
 }
 

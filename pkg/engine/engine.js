@@ -5,13 +5,13 @@
 import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
-import { cloudArgument, cloudsArgument, resultArgument } from './clouds.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
-import { checkRecipe, halves, lookedAt, ofAllPoints, preparedOf } from './preparing.js';
+import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf } from './preparing.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -124,7 +124,8 @@ export class Engine {
    */
   async prepare(cloud, steps, options) {
     const { transfer, ...watch } = this.#check('prepare', options);
-    return this.#prepared(cloudsArgument(cloud, transfer), checkRecipe(steps), watch);
+    const recipe = checkRecipe(steps);
+    return this.#prepared(preparedArgument(cloud, recipe, transfer), recipe, watch);
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
@@ -236,17 +237,17 @@ export class Engine {
     const given = cloudArgument(cloud, transfer);
     if (!prepare) return this.#run({ call, args: [given, counted(own, given)] }, watch);
     const [first, second] = halves(watch);
-    const prepared = await this.#prepared(given, prepare, first);
+    const prepared = await this.#prepared([given], prepare, first);
     return ofAllPoints(await this.#run({ call, args: [prepared.cloud, counted(own, prepared.cloud)] }, second), prepared);
   }
 
   /**
-   * @param {import('../types.js').PointCloud} cloud of this engine
+   * @param {import('../types.js').PointCloud[]} clouds of this engine
    * @param {import('../types.js').Step[]} steps
    * @param {Watch} watch
    */
-  async #prepared(cloud, steps, watch) {
-    return preparedOf(cloud, await this.#runIn('prepare', { call: 'prepare', args: [lookedAt(cloud), steps] }, watch));
+  async #prepared(clouds, steps, watch) {
+    return preparedOf(clouds, await this.#runIn('prepare', { call: 'prepare', args: [lookedAt(clouds), steps] }, watch));
   }
 
   /**

@@ -1,4 +1,6 @@
 /** A recipe's work in JavaScript: what wasm looks at, the points that are left, and results of them told of the points that were given. */
+import { cloudsArgument } from './clouds.js';
+import { registers, scansArgument, together } from './registering.js';
 import { badOption, isObject, rule } from './rules.js';
 
 /** @import { PointCloud, Prepared, Step } from '../types.js' */
@@ -22,25 +24,39 @@ export function checkRecipe(steps) {
 }
 
 /**
- * What a recipe looks at, in memory of its own.
- * @param {PointCloud} cloud
- * @returns {PointCloud}
+ * The caller's clouds of a recipe: one, or those that it registers.
+ * @param {unknown} clouds
+ * @param {Step[]} steps
+ * @param {boolean} [transfer]
+ * @returns {PointCloud[]}
  */
-export function lookedAt({ positions, normals, viewpoints, up }) {
-  return {
-    positions: positions.slice(),
-    normals: normals?.slice(),
-    viewpoints: viewpoints && { positions: viewpoints.positions.slice(), of: viewpoints.of?.slice() },
-    up,
-  };
+export function preparedArgument(clouds, steps, transfer) {
+  return registers(steps, clouds) ? scansArgument(/** @type {unknown[]} */ (clouds), transfer) : [cloudsArgument(clouds, transfer)];
 }
 
 /**
- * @param {PointCloud} cloud
+ * What a recipe looks at, in memory of its own.
+ * @param {PointCloud[]} clouds
+ * @returns {PointCloud[]}
+ */
+export function lookedAt(clouds) {
+  return clouds.map(({ positions, normals, colors, viewpoints, up }) => ({
+    positions: positions.slice(),
+    normals: normals?.slice(),
+    // One cloud has none to agree with.
+    colors: clouds.length > 1 ? colors?.slice() : undefined,
+    viewpoints: viewpoints && { positions: viewpoints.positions.slice(), of: viewpoints.of?.slice() },
+    up,
+  }));
+}
+
+/**
+ * @param {PointCloud[]} clouds
  * @param {{ kept: Uint32Array, labels: Uint8Array, steps: any[] }} found
  * @returns {Prepared<any>}
  */
-export function preparedOf(cloud, { kept, labels, steps }) {
+export function preparedOf(clouds, { kept, labels, steps }) {
+  const cloud = clouds.length > 1 ? together(clouds, steps[0].scans) : clouds[0];
   return { cloud: select(cloud, kept), kept, labels, steps };
 }
 

@@ -43,7 +43,7 @@ export function joinedCloud(clouds) {
  * @param {Pick<PointCloud, 'positions' | 'origin'>} cloud
  * @param {readonly number[]} [to]
  */
-function fromOrigin({ positions, origin = [0, 0, 0] }, to = [0, 0, 0]) {
+export function fromOrigin({ positions, origin = [0, 0, 0] }, to = [0, 0, 0]) {
   return Float64Array.from(positions, (x, i) => x + (origin[i % 3] - to[i % 3]));
 }
 

@@ -1,5 +1,7 @@
 //! Recipes, for JavaScript: which points are left, and what every step saw. `pkg/engine/preparing.js` takes the others out.
 
+use crate::base::error::Error;
+use crate::cloud::Cloud;
 use crate::js::clouds::PointCloud;
 use crate::js::progress::JsProgress;
 use crate::js::values::{JsOption, to_js};
@@ -9,12 +11,14 @@ use crate::prepare::recipe::Step;
 use js_sys::{Array, Function, Reflect, Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// [`pipeline::prepare`] of an array of steps: `{ kept, labels, steps }`.
+/// [`pipeline::prepare_scans`] of an array of clouds and an array of steps: `{ kept, labels, steps }`.
 #[wasm_bindgen]
-pub fn prepare(cloud: &PointCloud, steps: JsValue, progress: Function) -> JsResult {
+pub fn prepare(clouds: Array, steps: JsValue, progress: Function) -> JsResult {
     let recipe = Step::recipe(&JsOption(steps))?;
-    let (cloud, _) = cloud.to_cloud()?;
-    let prepared = pipeline::prepare(&cloud, &recipe, &mut JsProgress(progress))?;
+    let cloud = |cloud: JsValue| cloud.unchecked_into::<PointCloud>().to_cloud();
+    let clouds = clouds.iter().map(|given| Ok(cloud(given)?.0));
+    let clouds: Vec<Cloud> = clouds.collect::<Result<_, Error>>()?;
+    let prepared = pipeline::prepare_scans(&clouds, &recipe, &mut JsProgress(progress))?;
     let steps = Array::new();
     for report in &prepared.steps {
         let step = to_js(report)?;

@@ -9,15 +9,13 @@ use crate::cloud::octree::Octree;
 use crate::cloud::{Cloud, Frame};
 use crate::features::{Features, outliers};
 use crate::pipeline::input::measure;
-use crate::prepare::pieces::{Keep, Pieces};
-use crate::prepare::planes::{Drop, Known, NONE, Planes};
+use crate::pipeline::scans::Joined;
+use crate::pipeline::step_reports::StepReport;
+use crate::prepare::pieces::Pieces;
+use crate::prepare::planes::{Known, NONE, Planes};
 use crate::prepare::recipe::{MOST, Step};
 use crate::prepare::strays;
-use serde::Serialize;
 use web_time::Instant;
-
-/// Pieces that a report tells of.
-const TOLD: usize = 100;
 
 /// What a recipe makes of a cloud.
 #[derive(Debug, Clone)]
@@ -30,114 +28,109 @@ pub struct Prepared {
     pub steps: Vec<StepReport>,
 }
 
-/// What a step did. Lengths and places are in the caller's frame and unit.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct StepReport {
-    /// Its name in the recipe.
-    pub step: &'static str,
-    /// Points that are left after it.
-    pub kept: usize,
-    /// Points that it dropped.
-    pub dropped: usize,
-    /// Of a step `plane`: the planes, the largest first.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub planes: Option<Vec<PlaneReport>>,
-    /// Of a step `pieces`: the hundred largest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pieces: Option<Vec<PieceReport>>,
-    /// Of a step `pieces`: how many there are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub count: Option<usize>,
-    /// Why it did less than a person may expect; else empty.
-    pub reason: String,
-    /// Time that it took, with what it was the first to need.
-    pub ms: f64,
-    /// Of a step `plane` or `pieces`, for each point of the cloud: the number of its plane or piece, or 2³² - 1.
-    #[serde(skip)]
-    pub labels: Option<Vec<u32>>,
-}
-
-/// A plane of a scan.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct PlaneReport {
-    /// Points that belong to it.
-    pub points: usize,
-    /// Their share of the points that the step found.
-    pub share: f64,
-    /// Middle of its points.
-    pub point: [f64; 3],
-    /// Unit, to the side that was seen or that most of the scan is on.
-    pub normal: [f64; 3],
-    /// Standard deviation of its points across it.
-    pub spread: f64,
-    /// Area that its points stand for.
-    pub area: f64,
-    /// Whether it is what a step `plane` with `drop: 'floor'` drops.
-    pub floor: bool,
-    /// Whether it is among those that `drop: 'all'` drops.
-    pub carries: bool,
-    /// Whether this step dropped it.
-    pub dropped: bool,
-}
-
-/// A piece of a scan.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct PieceReport {
-    /// How many points it has.
-    pub points: usize,
-    /// Their share of the points that the step found.
-    pub share: f64,
-    /// Lower corner of its box.
-    pub min: [f64; 3],
-    /// Upper corner.
-    pub max: [f64; 3],
-    /// Whether this step kept it.
-    pub kept: bool,
-}
-
 /// Does the steps of a recipe, each with what those before left.
 ///
 /// # Errors
-/// [`Error::BadOption`] (a step that leaves nothing, more than [`MOST`] steps), [`Error::Cancelled`].
+/// [`Error::BadOption`] (a step that leaves nothing, more than [`MOST`] steps, `register` behind another step), [`Error::Cancelled`].
 pub fn prepare(cloud: &Cloud, steps: &[Step], progress: &mut dyn Progress) -> Result<Prepared> {
-    if steps.len() > MOST {
-        let expected = format!("at most {MOST} steps");
-        let found = steps.len().to_string();
-        return Err(Error::bad_option("prepare", &expected, &found));
-    }
-    let mut scan = Scan {
-        cloud,
-        kept: (0..cloud.len() as u32).collect(),
-        dropped_by: vec![0; cloud.len()],
-        measured: None,
-    };
+    check(steps)?;
+    let mut scan = Scan::of(cloud);
     let mut reports = Vec::new();
-    for (number, step) in (1..).zip(steps) {
-        let start = Instant::now();
-        let share = |k: usize| k as f32 / steps.len() as f32;
-        let range = share(reports.len())..share(reports.len() + 1);
-        let (dropped, mut report) = scan.perform(step, (progress, range))?;
-        if dropped.len() == scan.kept.len() {
-            let option = format!("prepare[{}]", reports.len());
-            let found = format!("a step '{}' that drops all {}", step.name(), dropped.len());
-            let expected = "a step that keeps a point";
-            return Err(Error::bad_option(&option, expected, &found));
-        }
-        scan.drop_those(&dropped, number);
-        report.step = step.name();
-        report.kept = scan.kept.len();
-        report.dropped = dropped.len();
-        report.ms = start.elapsed().as_secs_f64() * 1e3;
-        reports.push(report);
+    if steps.first() == Some(&Step::Register) {
+        reports.push(StepReport {
+            step: Step::Register.name(),
+            kept: cloud.len(),
+            reason: "there is one scan, and none to register it with".into(),
+            ..StepReport::default()
+        });
     }
+    scan.perform_all(steps, &mut reports, progress)?;
     Ok(Prepared {
         kept: scan.kept,
         dropped_by: scan.dropped_by,
         steps: reports,
     })
+}
+
+/// [`prepare`] of several scans, whose points are numbered through: as they lie, or, where the first step is `register`, in the frame of
+/// the first scan that is placed.
+///
+/// # Errors
+/// Those of [`prepare`]; [`Error::EmptyCloud`] without a scan.
+pub fn prepare_scans(
+    clouds: &[Cloud],
+    steps: &[Step],
+    progress: &mut dyn Progress,
+) -> Result<Prepared> {
+    check(steps)?;
+    match clouds {
+        [] => return Err(Error::EmptyCloud),
+        [cloud] => return prepare(cloud, steps, progress),
+        _ => {}
+    }
+    let mut reports = Vec::new();
+    let joined = if steps.first() == Some(&Step::Register) {
+        let start = Instant::now();
+        let range = 0.0..1.0 / steps.len() as f32;
+        let joined = Joined::registered(clouds, &mut Part::new(progress, range))?;
+        reports.push(StepReport::of_scans(
+            &joined,
+            start.elapsed().as_secs_f64() * 1e3,
+        ));
+        joined
+    } else {
+        Joined::lying(clouds)?
+    };
+    let mut scan = Scan::of(&joined.cloud);
+    scan.perform_all(steps, &mut reports, progress)?;
+    // What is told of points of scans that were left out, too.
+    let count = clouds.iter().map(Cloud::len).sum();
+    let mut dropped_by = vec![1; count];
+    for (&i, &by) in joined.callers.iter().zip(&scan.dropped_by) {
+        dropped_by[i as usize] = by;
+    }
+    for labels in reports
+        .iter_mut()
+        .filter_map(|report| report.labels.as_mut())
+    {
+        *labels = spread(labels, &joined.callers, count);
+    }
+    let callers = scan.kept.iter().map(|&i| joined.callers[i as usize]);
+    Ok(Prepared {
+        kept: callers.collect(),
+        dropped_by,
+        steps: reports,
+    })
+}
+
+/// Labels of some points as those of all, [`NONE`] for the others.
+fn spread(labels: &[u32], callers: &[u32], count: usize) -> Vec<u32> {
+    let mut all = vec![NONE; count];
+    for (&i, &label) in callers.iter().zip(labels) {
+        all[i as usize] = label;
+    }
+    all
+}
+
+/// What is wrong with a recipe as a whole.
+fn check(steps: &[Step]) -> Result<()> {
+    if steps.len() > MOST {
+        let expected = format!("at most {MOST} steps");
+        let found = steps.len().to_string();
+        return Err(Error::bad_option("prepare", &expected, &found));
+    }
+    let behind = steps
+        .iter()
+        .skip(1)
+        .position(|step| *step == Step::Register);
+    match behind {
+        Some(k) => Err(Error::bad_option(
+            &format!("prepare[{}].step", k + 1),
+            "'register' as the first step alone",
+            "'register' behind others",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// What is left of a cloud, and what is known of that.
@@ -162,7 +155,44 @@ struct Measured {
 
 type Watch<'a> = (&'a mut dyn Progress, std::ops::Range<f32>);
 
-impl Scan<'_> {
+impl<'a> Scan<'a> {
+    fn of(cloud: &'a Cloud) -> Scan<'a> {
+        Scan {
+            cloud,
+            kept: (0..cloud.len() as u32).collect(),
+            dropped_by: vec![0; cloud.len()],
+            measured: None,
+        }
+    }
+
+    /// Does the steps that have no report yet.
+    fn perform_all(
+        &mut self,
+        steps: &[Step],
+        reports: &mut Vec<StepReport>,
+        progress: &mut dyn Progress,
+    ) -> Result<()> {
+        for step in &steps[reports.len()..] {
+            let start = Instant::now();
+            let share = |k: usize| k as f32 / steps.len() as f32;
+            let range = share(reports.len())..share(reports.len() + 1);
+            let (dropped, mut report) = self.perform(step, (progress, range))?;
+            if dropped.len() == self.kept.len() {
+                let option = format!("prepare[{}]", reports.len());
+                let found = format!("a step '{}' that drops all {}", step.name(), dropped.len());
+                let expected = "a step that keeps a point";
+                return Err(Error::bad_option(&option, expected, &found));
+            }
+            self.drop_those(&dropped, reports.len() as u8 + 1);
+            report.step = step.name();
+            report.kept = self.kept.len();
+            report.dropped = dropped.len();
+            report.ms = start.elapsed().as_secs_f64() * 1e3;
+            reports.push(report);
+        }
+        Ok(())
+    }
+
     /// Which of the points that are left a step drops, as the caller's indices, and what it saw.
     fn perform(&mut self, step: &Step, (progress, range): Watch) -> Result<(Vec<u32>, StepReport)> {
         if let Step::Region { region, keep } = step {
@@ -210,7 +240,7 @@ impl Scan<'_> {
                 let planes = Planes::find(tree, features, &known, (*min_share, *seed), &mut part)?;
                 let chosen = planes.chosen(drop);
                 let mask = planes.dropped(tree, &chosen, *behind);
-                (mask, planes_report(planes, drop, &chosen, *frame))
+                (mask, StepReport::of_planes(planes, drop, &chosen, *frame))
             }
             Step::Pieces { keep, gap } => {
                 let pieces = Pieces::find(tree, &features.spacing, *gap, &mut part)?;
@@ -220,16 +250,14 @@ impl Scan<'_> {
                     .iter()
                     .map(|&piece| !kept[piece as usize])
                     .collect();
-                (mask, pieces_report(pieces, keep, &kept, *frame))
+                (mask, StepReport::of_pieces(pieces, keep, &kept, *frame))
             }
-            Step::Region { .. } => (Vec::new(), StepReport::default()),
+            Step::Region { .. } | Step::Register => {
+                (vec![false; callers.len()], StepReport::default())
+            }
         };
         if let Some(labels) = &mut report.labels {
-            let mut all = vec![NONE; cloud.len()];
-            for (&i, &label) in callers.iter().zip(labels.iter()) {
-                all[i as usize] = label;
-            }
-            *labels = all;
+            *labels = spread(labels, callers, cloud.len());
         }
         let of = callers.iter().zip(mask);
         let mut dropped: Vec<u32> = of.filter(|(_, is)| *is).map(|(&i, _)| i).collect();
@@ -285,64 +313,5 @@ impl Measured {
             callers: of.iter().map(|&i| self.callers[i]).collect(),
             tree,
         }
-    }
-}
-
-fn planes_report(planes: Planes, drop: &Drop, chosen: &[bool], frame: Frame) -> StepReport {
-    let all = planes.of.len() as f64;
-    let report = |(number, plane): (usize, &crate::prepare::planes::Plane)| PlaneReport {
-        points: plane.points,
-        share: plane.points as f64 / all,
-        point: frame.to_caller(plane.point.as_vec3()),
-        normal: plane.normal.to_array(),
-        spread: plane.sigma * frame.diagonal,
-        area: plane.area * frame.diagonal * frame.diagonal,
-        floor: planes.floor == Some(number),
-        carries: plane.carries,
-        dropped: chosen[number],
-    };
-    let reason = match drop {
-        Drop::Floor if planes.floor.is_none() => {
-            "no plane carries what was scanned: none was dropped"
-        }
-        Drop::All if !chosen.contains(&true) => {
-            "no plane carries what was scanned: none was dropped"
-        }
-        Drop::Numbers(numbers) if numbers.iter().any(|&n| n as usize >= chosen.len()) => {
-            "some of these numbers are no plane's"
-        }
-        _ => "",
-    };
-    StepReport {
-        planes: Some(planes.all.iter().enumerate().map(report).collect()),
-        labels: Some(planes.of),
-        reason: reason.into(),
-        ..StepReport::default()
-    }
-}
-
-fn pieces_report(pieces: Pieces, keep: &Keep, kept: &[bool], frame: Frame) -> StepReport {
-    let all = pieces.of.len() as f64;
-    let each = pieces.all.iter().zip(kept).take(TOLD);
-    let report = |(piece, &kept): (&crate::prepare::pieces::Piece, &bool)| PieceReport {
-        points: piece.points,
-        share: piece.points as f64 / all,
-        min: frame.to_caller(piece.lo),
-        max: frame.to_caller(piece.hi),
-        kept,
-    };
-    let reason = match keep {
-        Keep::Largest(count) if *count > kept.len() => "there are fewer pieces",
-        Keep::Numbers(numbers) if numbers.iter().any(|&n| n as usize >= kept.len()) => {
-            "some of these numbers are no piece's"
-        }
-        _ => "",
-    };
-    StepReport {
-        pieces: Some(each.map(report).collect()),
-        count: Some(kept.len()),
-        labels: Some(pieces.of),
-        reason: reason.into(),
-        ..StepReport::default()
     }
 }

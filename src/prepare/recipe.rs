@@ -1,6 +1,7 @@
 //! A recipe: steps as plain data, in the order in which they are done.
 //!
 //! ```text
+//! { step: 'register' }                                             scans in frames of their own, first of all
 //! { step: 'outliers' }                                             isolated points
 //! { step: 'flying' }                                               points beside a surface, or between two on a line of sight
 //! { step: 'plane', drop: 'floor', behind, minShare, seed }         'floor', 'all', 'none', or numbers of planes
@@ -23,6 +24,8 @@ pub const MOST: usize = 255;
 /// One step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
+    /// Brings several scans into one frame ([`crate::prepare::register`]), and drops those that do not fit. It is the first step.
+    Register,
     /// Drops isolated points ([`crate::features::outliers`]).
     Outliers,
     /// Drops flying pixels ([`crate::prepare::strays`]).
@@ -58,6 +61,7 @@ impl Step {
     /// The name that a recipe has for it.
     pub fn name(&self) -> &'static str {
         match self {
+            Step::Register => "register",
             Step::Outliers => "outliers",
             Step::Flying => "flying",
             Step::Plane { .. } => "plane",
@@ -86,8 +90,7 @@ impl Step {
     }
 
     fn of(value: &dyn Value, path: &str) -> Result<Step> {
-        const NAMES: &str =
-            "'outliers', 'flying', 'plane', 'pieces', 'box', 'sphere', 'half-space' or 'polygon'";
+        const NAMES: &str = "'register', 'outliers', 'flying', 'plane', 'pieces', 'box', 'sphere', 'half-space' or 'polygon'";
         let entries = value
             .entries()
             .ok_or_else(|| bad(path, "an object with step", value))?;
@@ -98,6 +101,7 @@ impl Step {
         let name = fields.take("step");
         let word = name.as_ref().and_then(|name| name.word());
         let step = match word.as_deref() {
+            Some("register") => Step::Register,
             Some("outliers") => Step::Outliers,
             Some("flying") => Step::Flying,
             Some("plane") => fields.plane()?,

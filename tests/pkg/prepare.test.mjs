@@ -106,6 +106,53 @@ test('several clouds become one, in one frame', async () => {
   assert.equal((await rejection(prepare([], []))).code, 'bad-input');
 });
 
+/** More than half of a pig from one side and another, scanned twice, in frames of their own, the second in less light. */
+const pigs = [await sample('pig', { count: 6000, seed: 1 }), await sample('pig', { count: 6000, seed: 2 })];
+const views = pigs.map(({ positions, colors }, k) => {
+  const toward = k === 0 ? [1, 0] : [0.6, 0.8];
+  const at = (values, i) => [...values.subarray(3 * i, 3 * i + 3)];
+  const seen = [...Array(6000).keys()].filter((i) => positions[3 * i] * toward[0] + positions[3 * i + 2] * toward[1] > -2);
+  const place = ([x, y, z]) => (k === 0 ? [x, y, z] : [30 - y, x - 5, z + 7]);
+  return {
+    positions: Float32Array.from(seen.flatMap((i) => place(at(positions, i)))),
+    colors: Uint8Array.from(seen.flatMap((i) => at(colors, i).map((x) => x * [1, 0.9][k]))),
+    attributes: { number: Float32Array.from(seen) },
+    up: k === 0 ? [0, 1, 0] : [-1, 0, 0],
+  };
+});
+
+test('scans in frames of their own are put together, and what fits none is left out', async () => {
+  const other = { positions: (await sample('part', { count: 3000 })).positions };
+  const { cloud, kept, labels, steps } = await prepare([...views, other], [{ step: 'register' }, { step: 'outliers' }]);
+  const [{ scans, pairs, dropped, reason }] = steps;
+  assert.deepEqual(scans.map(({ placed }) => placed), [true, true, false]);
+  assert.match(reason, /1 scan/);
+  assert.match(scans[2].reason, /another scan/);
+  assert.ok(scans[2].pose === undefined && dropped === 3000);
+  assert.deepEqual(pairs.map(({ scans, trusted }) => [scans, trusted]), [[[0, 1], true]]);
+  assert.ok(pairs[0].overlap > 0.25 && pairs[0].rms < 0.05, JSON.stringify(pairs));
+  assert.ok(labels.subarray(-3000).every((label) => label === 1) && kept.at(-1) < labels.length - 3000);
+  assert.deepEqual(cloud.up, [0, 1, 0]);
+  const first = views[0].positions.length / 3;
+  let most = 0;
+  const [before, after] = [[0, 0], [0, 0]];
+  kept.forEach((point, k) => {
+    const which = point < first ? 0 : 1;
+    const i = cloud.attributes.number[k];
+    for (let a = 0; a < 3; a++) {
+      most = Math.max(most, Math.abs(cloud.positions[3 * k + a] - pigs[which].positions[3 * i + a]));
+      before[which] += pigs[which].colors[3 * i + a];
+      after[which] += cloud.colors[3 * k + a];
+    }
+  });
+  assert.ok(most < 0.1, `${most} of a pig of 24`);
+  for (const k of [0, 1]) assert.ok(Math.abs(after[k] / before[k] - 0.95) < 0.01, 'both are in the light between');
+  const alone = await prepare(views[0], [{ step: 'register' }]);
+  assert.match(alone.steps[0].reason, /one scan/);
+  const error = await rejection(prepare(views, [{ step: 'outliers' }, { step: 'register' }]));
+  assert.match(error.message, /prepare\[1\]\.step/);
+});
+
 test('what is no recipe is an error that names the step', async () => {
   for (const [steps, option] of [
     ['floor', /prepare/], [[1], /prepare/], [[{}], /prepare\[0\]\.step/], [[{ step: 'melt' }], /prepare\[0\]\.step.*'plane'/s],
@@ -158,6 +205,12 @@ test('the command line prepares, merges, and takes a recipe before a reduction',
   assert.deepEqual(json.steps.map(({ step }) => step), ['plane', 'pieces']);
   await pointweave('merge', 'object.ply', 'scan.ply', '-o', 'all.ply');
   assert.equal((await read(await readFile(at('all.ply')))).positions.length, object.positions.length + 3 * count);
+  for (const [k, view] of views.entries()) await writeFile(at(`view${k}.ply`), await write(view));
+  const merged = await pointweave('merge', 'view0.ply', 'view1.ply', 'object.ply', '-o', 'pig.ply', '--register');
+  assert.match(merged.stderr, /2 of 3 scans placed/);
+  assert.match(merged.stderr, /object\.ply is left out: /);
+  const points = views[0].positions.length + views[1].positions.length;
+  assert.equal((await read(await readFile(at('pig.ply')))).positions.length, points);
   for (const [args, words] of [
     [['prepare', 'scan.ply', '-o', 'x.ply'], /what should be cut/], [['prepare', 'scan.ply', '-o', 'x.stl', '--drop-floor'], /triangles/],
     [['prepare', 'scan.ply', '-o', 'x.ply', '--crop', '1,2'], /six numbers/], [['prepare', 'scan.ply', '-o', 'x.ply', '--prepare', 'scan.ply'], /no recipe/],

@@ -6,12 +6,13 @@ use crate::build;
 use crate::packages;
 use crate::shell::{Result, command, root, run, say};
 
-/// Runs the benchmarks: `orient` and `prepare` natively, the others on a fresh build. `formats` compares files with what other programs read
+/// Runs the benchmarks: `orient`, `prepare` and `register` natively, the others on a fresh build. `formats` compares files with what other programs read
 /// and write.
 pub fn bench(arguments: &[String]) -> Result<()> {
     let asked = |name: &str| arguments.is_empty() || arguments.iter().any(|asked| asked == name);
-    let is_own =
-        |argument: &&String| !["orient", "prepare", "formats"].contains(&argument.as_str());
+    let is_own = |argument: &&String| {
+        !["orient", "prepare", "register", "formats"].contains(&argument.as_str())
+    };
     let others: Vec<&String> = arguments.iter().filter(is_own).collect();
     if arguments.is_empty() || !others.is_empty() {
         bench_package(&others)?;
@@ -19,7 +20,11 @@ pub fn bench(arguments: &[String]) -> Result<()> {
     if asked("formats") {
         compare_formats()?;
     }
-    for (name, example) in [("orient", "orient_truth"), ("prepare", "prepare_truth")] {
+    for (name, example) in [
+        ("orient", "orient_truth"),
+        ("prepare", "prepare_truth"),
+        ("register", "register_truth"),
+    ] {
         if asked(name) {
             bench_natively(name, example)?;
         }
@@ -62,7 +67,7 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
     run(&mut bench, "a benchmark failed; its error is above")
 }
 
-/// An example with a known truth, beside Open3D: which side is out, and what is cut off a scan.
+/// An example with a known truth, beside Open3D: which side is out, what is cut off a scan, and how scans are put together.
 fn bench_natively(name: &str, example: &str) -> Result<()> {
     let mut bench = command("cargo");
     bench.args(["run", "--release", "--quiet", "--example", example, "--"]);

@@ -36,7 +36,7 @@ Usage: cargo xtask <command> [options]
   test PART [FILE [NAME]]
                         one of them; of native, wasm, pkg, element and page one file alone
                         (`test pkg cli` runs tests/pkg/cli.test.mjs), or its tests of that name
-  bench [ARGS…]         the benchmarks, after a build; `orient`, `prepare` and what else tests/bench/bench.mjs knows
+  bench [ARGS…]         the benchmarks, after a build; `orient`, `prepare`, `register` and what else tests/bench/bench.mjs knows
   setup                 install whatever the other commands need, and nothing else
 
 Environment: CHROMIUM, CHROMEDRIVER, FIREFOX and GECKODRIVER name programs to use instead of those found;
