@@ -29,6 +29,10 @@ pub enum Stage {
     Extract,
     /// Distances and topology.
     Report,
+    /// Fewer triangles.
+    Simplify,
+    /// Pictures of colours and normals.
+    Texture,
 }
 
 impl Stage {
@@ -45,6 +49,8 @@ impl Stage {
             Stage::Orient => "orient",
             Stage::Extract => "extract",
             Stage::Report => "report",
+            Stage::Simplify => "simplify",
+            Stage::Texture => "texture",
         }
     }
 }

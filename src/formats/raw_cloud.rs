@@ -37,6 +37,19 @@ impl Positions {
     }
 }
 
+/// Pictures on a mesh, and where its vertices are in them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Skin {
+    /// Two a point, 0 to 1; the first row of a picture is at 0.
+    pub uvs: Vec<f32>,
+    /// Four a point: a unit vector, and the sign of the bitangent.
+    pub tangents: Option<Vec<f32>>,
+    /// The colours, as the bytes of a PNG file.
+    pub color: Option<Vec<u8>>,
+    /// The normals in the tangents' frames, as the bytes of a PNG file.
+    pub normal: Option<Vec<u8>>,
+}
+
 /// What a file holds, in the file's frame and unit: the caller's arrays, not yet a [`Cloud`]. May have no points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawCloud {
@@ -64,10 +77,14 @@ pub struct RawCloud {
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
+    /// What a mesh wears besides.
+    pub skin: Option<Box<Skin>>,
     /// Faces that the file says it has.
     pub faces: u64,
     /// What was made of them.
     pub sampling: Sampling,
+    /// Triangles over the points, three indices each; none unless [`crate::formats::FaceMode::Mesh`] asks for them.
+    pub indices: Vec<u32>,
     /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`, `unused-vertices`; and `broken-faces`. The first
     /// two are `dropped`.
     pub skipped: Vec<(&'static str, u64)>,
@@ -93,8 +110,10 @@ impl RawCloud {
             crs: None,
             dropped: 0,
             replaced: 0,
+            skin: None,
             faces: 0,
             sampling: Sampling::default(),
+            indices: Vec::new(),
             skipped: Vec::new(),
             columns: Vec::new(),
             notes: Vec::new(),
@@ -188,10 +207,14 @@ impl RawCloud {
     /// Checks that every array has one entry a point.
     pub(super) fn check_lengths(&self) -> Result<()> {
         let points = self.points();
+        let skin = self.skin.as_deref();
+        let tangents = skin.and_then(|skin| skin.tangents.as_ref());
         let arrays = [
             ("positions", Some(self.positions.len()), 3),
             ("colors", self.colors.as_ref().map(Vec::len), 3),
             ("normals", self.normals.as_ref().map(Vec::len), 3),
+            ("uvs", skin.map(|skin| skin.uvs.len()), 2),
+            ("tangents", tangents.map(Vec::len), 4),
         ];
         let attributes = self
             .attributes
