@@ -7,6 +7,8 @@ import { select } from './preparing.js';
 
 /** The distances of the vertices travel among their attributes, under a name that no attribute has. */
 const DISTANCES = '';
+/** Stands for one that there is not, which wasm takes for no number: what is mixed with it is below 0. */
+const NONE = -1e30;
 
 /**
  * What wasm takes of a mesh.
@@ -43,7 +45,7 @@ export function left(points, { prepared }) {
 /** @param {any} mesh @param {Record<string, any>} argument */
 function withDistances({ distances }, argument) {
   if (!distances?.vertices) return argument;
-  return { ...argument, attributes: { ...argument.attributes, [DISTANCES]: distances.vertices.slice() } };
+  return { ...argument, attributes: { ...argument.attributes, [DISTANCES]: distances.vertices.map((/** @type {number} */ x) => (x >= 0 ? x : NONE)) } };
 }
 
 /**
@@ -58,7 +60,7 @@ export function lightened(mesh, { report: simplified, attributes = {}, ...made }
     ...others,
     ...made,
     ...(Object.keys(carried).length > 0 && { attributes: carried }),
-    ...(distances && { distances: { ...distances, vertices } }),
+    ...(distances && { distances: { ...distances, vertices: vertices.map((/** @type {number} */ x) => (x >= 0 ? x : NaN)) } }),
     report: { ...report, ...counts, ...(simplified && { simplified }) },
   };
 }

@@ -30,8 +30,10 @@ pub enum Stage {
     /// Distances and topology.
     Report,
     /// Fewer triangles.
+    #[cfg(feature = "light")]
     Simplify,
     /// Pictures of colours and normals.
+    #[cfg(feature = "light")]
     Texture,
 }
 
@@ -49,7 +51,9 @@ impl Stage {
             Stage::Orient => "orient",
             Stage::Extract => "extract",
             Stage::Report => "report",
+            #[cfg(feature = "light")]
             Stage::Simplify => "simplify",
+            #[cfg(feature = "light")]
             Stage::Texture => "texture",
         }
     }

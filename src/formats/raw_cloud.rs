@@ -78,13 +78,12 @@ pub struct RawCloud {
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
     /// What a mesh wears besides.
+    #[cfg(feature = "exports")]
     pub skin: Option<Box<Skin>>,
     /// Faces that the file says it has.
     pub faces: u64,
     /// What was made of them.
     pub sampling: Sampling,
-    /// Triangles over the points, three indices each; none unless [`crate::formats::FaceMode::Mesh`] asks for them.
-    pub indices: Vec<u32>,
     /// Points left out, by why: `not-finite`, `invalid`, `no-data`, `no-return`, `unused-vertices`; and `broken-faces`. The first
     /// two are `dropped`.
     pub skipped: Vec<(&'static str, u64)>,
@@ -110,10 +109,10 @@ impl RawCloud {
             crs: None,
             dropped: 0,
             replaced: 0,
+            #[cfg(feature = "exports")]
             skin: None,
             faces: 0,
             sampling: Sampling::default(),
-            indices: Vec::new(),
             skipped: Vec::new(),
             columns: Vec::new(),
             notes: Vec::new(),
@@ -204,10 +203,19 @@ impl RawCloud {
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 
+    /// Builds without writers have none.
+    pub(super) fn skin(&self) -> Option<&Skin> {
+        #[cfg(feature = "exports")]
+        let skin = self.skin.as_deref();
+        #[cfg(not(feature = "exports"))]
+        let skin = None;
+        skin
+    }
+
     /// Checks that every array has one entry a point.
     pub(super) fn check_lengths(&self) -> Result<()> {
         let points = self.points();
-        let skin = self.skin.as_deref();
+        let skin = self.skin();
         let tangents = skin.and_then(|skin| skin.tangents.as_ref());
         let arrays = [
             ("positions", Some(self.positions.len()), 3),

@@ -312,7 +312,6 @@ impl Reading {
             unit,
             crs,
             skipped: [cloud.skipped, self.sampled.skipped()].concat(),
-            indices: self.indices,
             sampling: self.sampled,
             ..cloud
         })

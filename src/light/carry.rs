@@ -2,7 +2,7 @@
 
 use crate::base::par;
 use crate::cloud::Attribute;
-use crate::light::Painted;
+use crate::light::painted::Painted;
 use crate::mesh::Mesh;
 use crate::report::distance::{TriangleTree, closest_on_triangle};
 use glam::{DVec3, Vec3};

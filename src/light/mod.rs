@@ -12,6 +12,7 @@
 //! **Cost**: `n log n` of the triangles that there are; a second natively for 200,000.
 
 pub(crate) mod carry;
+mod painted;
 pub(crate) mod quadric;
 mod shrink;
 mod web;
@@ -19,12 +20,12 @@ mod weld;
 
 use crate::base::error::{Error, Result};
 use crate::base::progress::{Progress, Silent, Stage};
-use crate::cloud::Attribute;
 use crate::mesh::{Mesh, crossings};
 use crate::report::distance::mesh_distance;
 use crate::report::{DistanceStats, LightReport, Topology, topology};
 use glam::{DVec3, Vec3};
 
+pub use painted::Painted;
 pub use weld::weld;
 
 /// Fewest triangles that a mesh can be asked for.
@@ -33,17 +34,6 @@ const FEWEST: usize = 4;
 const TRIES: usize = 8;
 /// After a try that was too far off, the next is given this share of what would do if the distance were in proportion.
 const CAUTION: f64 = 0.9;
-
-/// A mesh and what its vertices carry.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Painted {
-    /// In the unit frame; without normals where nobody gave any.
-    pub mesh: Mesh,
-    /// One colour a vertex.
-    pub colors: Option<Vec<[u8; 3]>>,
-    /// One value a vertex each.
-    pub attributes: Vec<Attribute>,
-}
 
 /// How light a mesh becomes: one of the two, or both.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::cloud::{Attribute, Cloud};
-use crate::light::Painted;
+use crate::light::painted::Painted;
 use crate::mesh::Mesh;
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ use glam::Vec3;
 /// [`Error::BadLength`], [`Error::BadIndex`]; [`Error::Degenerate`] where no triangle has an area.
 pub fn weld(cloud: &Cloud, indices: &[u32]) -> Result<Painted> {
     let points = cloud.points.len();
-    if indices.len() % 3 != 0 {
+    if !indices.len().is_multiple_of(3) {
         return Err(Error::BadLength {
             array: "indices".into(),
             expected: "a multiple of 3".into(),

@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 const NEAREST: usize = 8;
 /// Weights are those of distances beyond this share of a texel or of the points' spacing, the longer of the two: nearer points count
 /// alike.
-const SOFT: f64 = 0.35;
+const SOFT: f64 = 0.2;
 /// Texels farther from every point than so many spacings have no colour of their own.
 const FAR: f64 = 5.0;
 /// Points that one index of a parallel map takes.
@@ -33,16 +33,20 @@ pub(super) struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    pub(super) fn new(points: &[Vec3], colors: &[[u8; 3]], full: &'a Mesh) -> Points<'a> {
+    /// `faces` is of the full mesh's triangles.
+    pub(super) fn new(
+        points: &[Vec3],
+        colors: &[[u8; 3]],
+        (full, faces): (&'a Mesh, &TriangleTree),
+    ) -> Points<'a> {
         let tree = Octree::build(points);
-        let faces = TriangleTree::new(&full.vertices, &full.triangles);
         let tasks: Vec<&[Vec3]> = tree.points.chunks(PER_TASK).collect();
         let normals: Vec<Vec<Vec3>> = par::map(
             tasks.len(),
             || 0,
             |k, hint| {
                 let of = |&point: &Vec3| {
-                    normal(full, &Spot::nearest(point, full, &faces, hint)).as_vec3()
+                    normal(full, &Spot::nearest(point, full, faces, hint)).as_vec3()
                 };
                 tasks[k].iter().map(of).collect()
             },

@@ -31,6 +31,7 @@ use crate::base::progress::{Progress, Stage};
 use crate::cloud::Attribute;
 use crate::light::Painted;
 use crate::mesh::Mesh;
+use crate::report::distance::TriangleTree;
 use glam::Vec3;
 
 /// Sides of pictures, in texels.
@@ -123,13 +124,16 @@ pub fn bake(
     let tangents = tangents::tangents(&painted.mesh, &uvs)?;
     let [width, height] = unwrapped.size;
     let texels = texels::Texels::new(&painted.mesh, &uvs, [width, height]);
-    let spots = texels.spots(&painted.mesh, full, &mut |part| tell(0.2, 0.6, part))?;
+    let faces = TriangleTree::new(&full.vertices, &full.triangles);
+    let spots = texels.spots(&painted.mesh, (full, &faces), &mut |part| {
+        tell(0.2, 0.6, part)
+    })?;
     let mut textures = Vec::new();
     for &map in &params.maps {
         let mut done = |part: f32| tell(0.6, 0.95, part);
         let pixels = match (map, scan.colors) {
             (Map::Color, Some(colors)) => {
-                let colored = color::Points::new(scan.points, colors, full);
+                let colored = color::Points::new(scan.points, colors, (full, &faces));
                 colored.bake(&texels, &spots, full, &mut done)?
             }
             (Map::Color, None) => continue,

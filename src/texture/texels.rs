@@ -86,21 +86,20 @@ impl Texels {
         (area / self.all.len().max(1) as f64).sqrt()
     }
 
-    /// The places of the full mesh nearest to the texels', in their order.
+    /// The places of the full mesh nearest to the texels', in their order; `faces` is of its triangles.
     pub(super) fn spots(
         &self,
         mesh: &Mesh,
-        full: &Mesh,
+        (full, faces): (&Mesh, &TriangleTree),
         progress: &mut dyn FnMut(f32) -> Result<()>,
     ) -> Result<Vec<Spot>> {
-        let tree = TriangleTree::new(&full.vertices, &full.triangles);
         in_parallel(
             &self.all,
             progress,
             || 0,
             |texel: &Texel, hint| {
                 let at = place(mesh, &texel.on).as_vec3();
-                Spot::nearest(at, full, &tree, hint)
+                Spot::nearest(at, full, faces, hint)
             },
         )
     }

@@ -40,7 +40,7 @@ pub enum FaceMode {
     Sample,
     /// The vertices are the points; faces are counted.
     Vertices,
-    /// The vertices are the points, with the colours of their faces, and the triangles come along.
+    /// The vertices are the points, with the colours of their faces; [`crate::formats::Reading::take_indices`] gives the triangles.
     Mesh,
 }
 

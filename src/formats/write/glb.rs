@@ -62,7 +62,7 @@ pub(super) fn write(
             },
         );
     }
-    let skin = cloud.skin.as_deref().filter(|_| triangles.is_some());
+    let skin = cloud.skin().filter(|_| triangles.is_some());
     if let Some(skin) = skin {
         check_finite("uvs", &skin.uvs, 2)?;
         attribute("TEXCOORD_0", file.floats(&skin.uvs, VEC2, ""));

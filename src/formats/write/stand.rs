@@ -60,6 +60,7 @@ pub(super) fn stand(
             normal.copy_from_slice(&turned.to_array().map(|x| x as f32));
         }
     }
+    #[cfg(feature = "exports")]
     for tangent in moved
         .skin
         .iter_mut()
