@@ -237,6 +237,13 @@ fn colours_of_a_ply_file_in_one_value() {
         assert_eq!(cloud.colors, Some(vec![red, 128, 0]), "{kind} {value}");
         assert_eq!(cloud.attributes.len(), 1);
     }
+    // The bits of an opaque colour may be those of no number.
+    let head = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\
+                property float z\nproperty float rgb\nend_header\n";
+    let place = [1.0f32, 2.0, 3.0].map(f32::to_le_bytes).concat();
+    let file = [head.as_bytes(), &place, &0xff8a_1020u32.to_le_bytes()].concat();
+    let cloud = both(&file, Format::Ply);
+    assert_eq!(cloud.colors, Some(vec![0x8a, 0x10, 0x20]));
 }
 
 #[test]

@@ -96,6 +96,8 @@ fn a_scan_of_a_ptx_file_without_colours_is_white() {
     let colors = [[255, 128, 0]; 2].into_iter().chain([[255; 3]; 2]);
     assert_eq!(cloud.colors, Some(colors.flatten().collect()));
     assert_eq!(cloud.attributes[0].values, [0.5, 0.5, 0.25, 0.25]);
+    let fine = file.replace("255 128 0", "65535 32896 0");
+    assert_eq!(both(fine.as_bytes(), Format::Ptx).colors, cloud.colors);
     // Points alone have no intensity.
     let bare = format!("{head}1 2 3\n2 2 3\n");
     assert!(both(bare.as_bytes(), Format::Ptx).attributes.is_empty());

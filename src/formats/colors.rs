@@ -27,6 +27,9 @@ impl ColorRange {
     }
 }
 
+/// White beside values of any range.
+pub(super) const WHITE: f32 = f32::MAX;
+
 /// Counts of the values of colours.
 #[derive(Default)]
 pub(super) struct Tally {
@@ -41,6 +44,9 @@ pub(super) struct Tally {
 
 impl Tally {
     pub(super) fn add(&mut self, value: f32) {
+        if value == WHITE {
+            return;
+        }
         self.positive += u64::from(value > 0.0);
         self.fractional += u64::from(value.fract() != 0.0);
         self.over_1 += u64::from(value > 1.0);

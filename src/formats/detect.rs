@@ -159,40 +159,37 @@ fn known_but_not_read(head: &[u8]) -> Option<&'static str> {
         return Some("a DXF drawing");
     }
     match known {
-        Some("an XML or HTML document") => Some(xml_kind(head)),
-        Some("a JSON document") => Some(json_kind(head)),
+        Some("an XML or HTML document") => kind_of(head, &XML_KINDS).or(known),
+        Some("a JSON document") => kind_of(head, &JSON_KINDS).or(known),
         known => known,
     }
 }
 
-/// What kind of document a JSON file is.
-fn json_kind(head: &[u8]) -> &'static str {
-    const KINDS: [(&[u8], &str); 3] = [
-        (b"\"asset\"", "a glTF scene as text (.gltf), not as GLB"),
-        (b"\"FeatureCollection\"", "a GeoJSON document"),
-        (b"\"CityJSON\"", "a CityJSON model"),
-    ];
+/// What a JSON document says it is; much has assets.
+const JSON_KINDS: [(&[u8], &str); 3] = [
+    (b"\"FeatureCollection\"", "a GeoJSON document"),
+    (b"\"CityJSON\"", "a CityJSON model"),
+    (b"\"asset\"", "a glTF scene as text (.gltf), not as GLB"),
+];
+
+/// What an XML document says it is.
+const XML_KINDS: [(&[u8], &str); 5] = [
+    (b"<VTKFile", "a VTK file in XML"),
+    (b"<COLLADA", "a COLLADA scene"),
+    (b"<X3D", "an X3D scene"),
+    (b"<kml", "a KML document"),
+    (b"<LandXML", "a LandXML survey"),
+];
+
+/// The first of the kinds whose mark stands near the start.
+fn kind_of(head: &[u8], kinds: &[(&[u8], &'static str)]) -> Option<&'static str> {
     let head = &head[..head.len().min(4096)];
-    let found = KINDS.iter().find(|(mark, _)| has(head, mark));
-    found.map_or("a JSON document", |(_, name)| name)
+    let found = kinds.iter().find(|(mark, _)| has(head, mark));
+    found.map(|(_, name)| *name)
 }
 
 fn has(head: &[u8], name: &[u8]) -> bool {
     head.windows(name.len()).any(|window| window == name)
-}
-
-/// What kind of document an XML file is.
-fn xml_kind(head: &[u8]) -> &'static str {
-    const KINDS: [(&[u8], &str); 5] = [
-        (b"<VTKFile", "a VTK file in XML"),
-        (b"<COLLADA", "a COLLADA scene"),
-        (b"<X3D", "an X3D scene"),
-        (b"<kml", "a KML document"),
-        (b"<LandXML", "a LandXML survey"),
-    ];
-    let head = &head[..head.len().min(4096)];
-    let found = KINDS.iter().find(|(mark, _)| has(head, mark));
-    found.map_or("an XML or HTML document", |(_, name)| name)
 }
 
 fn unknown(found: &str) -> Error {

@@ -393,14 +393,11 @@ impl Body {
                 value(field, bytes)
             };
             if self.color == Some(i) {
-                packed = Some(match *bytes {
-                    [a, b, c, d] => unpacked(
-                        field.kind == Kind::Float,
-                        first,
-                        u32::from_le_bytes([a, b, c, d]),
-                    ),
-                    _ => unpacked(field.kind == Kind::Float, first, (first as f32).to_bits()),
-                });
+                let bits = match *bytes {
+                    [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
+                    _ => (first as f32).to_bits(),
+                };
+                packed = Some(unpacked(field.kind == Kind::Float, first, bits));
             }
             self.values.push(first);
         }

@@ -54,11 +54,11 @@ impl Parser for Ply {
         let rows = match &mut self.rows {
             Some(rows) => rows,
             None => {
-                let Some(header) = self.header.read(input)? else {
+                let Some(mut header) = self.header.read(input)? else {
                     return Ok(Step::More);
                 };
                 let (points, mut columns) = header.points(input)?;
-                let packed = header.elements[points].packed_color(&mut columns);
+                let packed = header.elements[points].packed_color(header.encoding, &mut columns);
                 let has_faces =
                     |element: &Element| Layout::of(element).is_some() && element.rows > 0;
                 let last = self.faces.as_mut().and_then(|faces| {

@@ -3,7 +3,7 @@
 //! before it, and its last row is the scanner's place. Cells without a return are `0 0 0`; they are left out and counted. Points of a
 //! scan without colours are white where another scan has some.
 
-use super::colors::ColorRange;
+use super::colors::{ColorRange, WHITE};
 use super::input::Input;
 use super::options::ReadOptions;
 use super::parser::{Parser, Step};
@@ -32,6 +32,8 @@ pub(super) fn looks_like(head: &[u8]) -> bool {
 struct Scan {
     left: u64,
     matrix: [[f64; 4]; 4],
+    /// Values a point, once one has been.
+    width: usize,
 }
 
 /// Reads the points.
@@ -40,8 +42,6 @@ pub(super) struct Ptx {
     keep: bool,
     header: Vec<Vec<f64>>,
     scan: Option<Scan>,
-    /// Values a point of the scan at hand, once one has been.
-    width: usize,
     values: Vec<f64>,
 }
 
@@ -67,15 +67,7 @@ impl Parser for Ptx {
             }
             match &mut self.scan {
                 Some(scan) => {
-                    point(
-                        scan,
-                        &self.values,
-                        &mut self.width,
-                        self.keep,
-                        line,
-                        input,
-                        table,
-                    )?;
+                    point(scan, &self.values, self.keep, line, input, table)?;
                     if scan.left == 0 {
                         self.scan = None;
                     }
@@ -136,8 +128,11 @@ impl Ptx {
         });
         let [x, y, z, _] = matrix[3];
         table.seen_from(Some([x, y, z]));
-        self.width = 0;
-        self.scan = (left > 0).then_some(Scan { left, matrix });
+        self.scan = (left > 0).then_some(Scan {
+            left,
+            matrix,
+            width: 0,
+        });
         Ok(())
     }
 }
@@ -145,16 +140,16 @@ impl Ptx {
 fn point(
     scan: &mut Scan,
     values: &[f64],
-    width: &mut usize,
     keep: bool,
     line: &[u8],
     input: &Input,
     table: &mut Option<Table>,
 ) -> Result<()> {
-    if *width == 0 {
-        *width = values.len();
+    if scan.width == 0 {
+        scan.width = values.len();
     }
-    if values.len() != *width || ![3, 4, 6, 7].contains(width) {
+    let width = scan.width;
+    if values.len() != width || ![3, 4, 6, 7].contains(&width) {
         let expected = "x y z, an intensity, and a colour where all of the scan have one";
         return Err(input.bad_line(expected, line));
     }
@@ -171,16 +166,16 @@ fn point(
     let at = |axis: usize| {
         local[0] * m[0][axis] + local[1] * m[1][axis] + local[2] * m[2][axis] + m[3][axis]
     };
-    let intensity = if [4, 7].contains(width) {
+    let intensity = if [4, 7].contains(&width) {
         values[3]
     } else {
         0.0
     };
-    let color = match *width {
-        6 | 7 => [values[*width - 3], values[*width - 2], values[*width - 1]],
-        _ => [255.0; 3],
+    let color = match width {
+        6 | 7 => [values[width - 3], values[width - 2], values[width - 1]],
+        _ => [f64::from(WHITE); 3],
     };
-    table.colors_said |= *width > 4;
+    table.colors_said |= width > 4;
     table.push(&[at(0), at(1), at(2), color[0], color[1], color[2], intensity]);
     Ok(())
 }

@@ -124,30 +124,41 @@ impl Element {
     }
 
     /// The property that packs a colour into four bytes, where the columns have none; they get three behind the row's.
-    pub(super) fn packed_color(&self, columns: &mut Columns) -> Option<Packed> {
+    pub(super) fn packed_color(
+        &mut self,
+        encoding: Encoding,
+        columns: &mut Columns,
+    ) -> Option<Packed> {
         if columns.color.is_some() {
             return None;
         }
         let values = self
             .properties
-            .iter()
+            .iter_mut()
             .filter_map(|property| match property {
-                Property::One { name, scalar } => Some((name.to_lowercase(), *scalar)),
+                Property::One { name, scalar } => Some((name.to_lowercase(), scalar)),
                 Property::List { .. } => None,
             });
-        let values: Vec<(String, Scalar)> = values.collect();
-        let packs = |(name, scalar): &(String, Scalar)| {
+        let mut values: Vec<(String, &mut Scalar)> = values.collect();
+        let packs = |(name, scalar): &(String, &mut Scalar)| {
             ["rgb", "rgba"].contains(&name.as_str())
                 && matches!(scalar, Scalar::I32 | Scalar::U32 | Scalar::F32)
         };
         let at = values.iter().position(packs)?;
         let behind = values.len();
+        let is_float = *values[at].1 == Scalar::F32;
+        let is_bits = is_float && encoding != Encoding::Ascii;
+        if is_bits {
+            // As a number, bits that are none would change.
+            *values[at].1 = Scalar::U32;
+        }
         columns.color = Some([behind, behind + 1, behind + 2]);
         columns.colors = ColorRange::Bytes;
         columns.scalars.retain(|(column, _)| *column != at);
         Some(Packed {
             at,
-            is_float: values[at].1 == Scalar::F32,
+            is_float,
+            is_bits,
         })
     }
 
@@ -191,14 +202,20 @@ impl Element {
 pub(super) struct Packed {
     at: usize,
     is_float: bool,
+    /// The row has the float's bits.
+    is_bits: bool,
 }
 
 impl Packed {
     /// Red, green and blue.
     pub(super) fn color(&self, row: &[f64]) -> [f64; 3] {
-        let value = row[self.at];
-        let [blue, green, red, _] =
-            unpacked(self.is_float, value, (value as f32).to_bits()).to_le_bytes();
+        let (value, bits) = if self.is_bits {
+            let bits = row[self.at] as u32;
+            (f64::from(f32::from_bits(bits)), bits)
+        } else {
+            (row[self.at], (row[self.at] as f32).to_bits())
+        };
+        let [blue, green, red, _] = unpacked(self.is_float, value, bits).to_le_bytes();
         [red, green, blue].map(f64::from)
     }
 }

@@ -111,25 +111,21 @@ impl Dialect {
     }
 }
 
-/// Whether lines have decimal commas, and commas with blanks behind them between values.
-pub(super) fn is_comma_blank<'a>(mut lines: impl Iterator<Item = &'a [u8]>) -> bool {
+/// Whether most lines have at least three values with commas and blanks between them, two of them with decimal commas.
+pub(super) fn is_comma_blank<'a>(lines: impl Iterator<Item = &'a [u8]>) -> bool {
     let dialect = Dialect {
         delimiter: Delimiter::CommaBlank,
         decimal_comma: true,
     };
     let (mut all, mut marked) = (0, 0);
-    lines.by_ref().for_each(|line| {
-        let mut tokens = dialect.split(line);
-        let numbers = tokens.by_ref().filter(|token| token.contains(&b','));
-        let right = |token: &[u8]| number_of(token, true).is_some();
+    for line in lines {
+        let tokens: Vec<&[u8]> = dialect.split(line).collect();
+        let mut decimal = tokens.iter().filter(|token| token.contains(&b','));
+        let two = decimal.clone().count() >= 2;
+        let right = decimal.all(|token| number_of(token, true).is_some());
         all += 1;
-        marked += usize::from(
-            line.windows(2).any(|pair| pair == b", ") && {
-                let found: Vec<bool> = numbers.map(right).collect();
-                !found.is_empty() && found.iter().all(|right| *right)
-            },
-        );
-    });
+        marked += usize::from(tokens.len() >= 3 && two && right);
+    }
     2 * marked > all
 }
 

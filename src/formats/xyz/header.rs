@@ -18,7 +18,8 @@ pub(super) fn is_header_of_numbers(lines: &[&Numbered], dialect: Dialect) -> boo
     };
     let has_places = |line: &&&Numbered| {
         let mut values = dialect.split(&line.bytes);
-        values.by_ref().take(3).all(|value| value.contains(&b'.'))
+        let mark = |b: &u8| *b == b'.' || (dialect.decimal_comma && *b == b',');
+        values.by_ref().take(3).all(|value| value.iter().any(mark))
     };
     match tokens.as_slice() {
         [[], rest @ ..] => !below.is_empty() && numbers(rest),

@@ -86,11 +86,12 @@ impl Plan {
         }
         match header(before, dialect, &grid)? {
             Header::Names {
-                roles,
+                mut roles,
                 names,
                 ragged,
                 weak,
             } => {
+                name_normals(&mut roles, &grid);
                 let unit = unit_above(before, dialect).or_else(|| names::unit(&names, &roles));
                 let plan = Plan::new(dialect, roles, &grid, names, ragged, weak);
                 Ok(Plan { unit, ..plan })
@@ -143,7 +144,6 @@ impl Plan {
                 *role = "-".into();
             }
         }
-        name_normals(&mut roles, grid);
         let named = roles.iter().position(|role| role == "rgb");
         let is = |holds: fn(&Column) -> bool| named.and_then(column).is_some_and(holds);
         let written = is(Column::is_written_color);
@@ -209,8 +209,8 @@ impl Plan {
 
     /// Whether a line has another letter in front than points have.
     pub(super) fn is_no_point(&self, line: &[u8]) -> bool {
-        let first = self.dialect.split(line).next();
-        self.letter.is_some_and(|letter| first != Some(&[letter]))
+        self.letter
+            .is_some_and(|letter| self.dialect.split(line).next() != Some(&[letter]))
     }
 
     /// Whether a line is a title, or the names of the columns again.
@@ -242,11 +242,12 @@ impl Plan {
             row.push(if self.roles[column] == "-" {
                 0.0
             } else if self.written && self.packed == Some(column) {
-                let found = match self.dialect.value(token) {
+                let none = || match self.dialect.value(token) {
                     Value::Empty => Some(f64::NAN),
                     Value::Number(none) if none.is_nan() => Some(none),
-                    _ => color(token),
+                    _ => None,
                 };
+                let found = color(token).or_else(none);
                 let expected = "a colour of 6 hexadecimal digits, or of 3 numbers";
                 found.ok_or_else(|| input.bad_value(number, expected, token))?
             } else {
@@ -307,9 +308,12 @@ fn below_names(said: &[&Numbered], kinds: &[Line], first: usize, dialect: Dialec
     below.unwrap_or(first)
 }
 
-/// Columns that are called i, j and k hold normals where these are vectors of length 1, as coordinate measuring machines write
-/// them.
+/// Columns that the file calls i, j and k hold normals where these are vectors of length 1, as coordinate measuring machines
+/// write them, and no others are there.
 fn name_normals(roles: &mut [String], grid: &Grid) {
+    if roles.iter().any(|role| role == "nx") {
+        return;
+    }
     let at = ["i", "j", "k"].map(|name| {
         roles
             .iter()
