@@ -121,7 +121,7 @@ export interface TriangleMesh<Positions extends Float32Array | Float64Array = Fl
 
 /** How light a mesh becomes: one of the two, or both. */
 export interface SimplifyOptions {
-  /** At most so many triangles, from 4. The mesh has at least 98 % of them, or as many as it had. */
+  /** At most so many triangles, from 1. The mesh has at least 98 % of them, or as many as it had. */
   triangles?: number;
   /** As few triangles as keep both meshes within this distance of each other, a fraction of the diagonal, above 0 to 1. */
   error?: number;

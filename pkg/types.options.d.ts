@@ -165,7 +165,7 @@ export interface ReconstructOptions {
   resolution?: number | 'auto';
   /**
    * The mesh has at most so many triangles, at least 98 % of them, and of the same topology: edges are collapsed by what
-   * that costs. The report's `simplified` says how far the mesh is then from what it was. At least 4. Default: as many as
+   * that costs. The report's `simplified` says how far the mesh is then from what it was. At least 1. Default: as many as
    * the points need.
    */
   triangles?: number;

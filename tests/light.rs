@@ -209,7 +209,7 @@ fn what_is_no_mesh_is_an_error() {
         Error::Degenerate { .. }
     ));
     for params in [
-        fewer(3),
+        fewer(0),
         SimplifyParams::default(),
         SimplifyParams {
             triangles: None,

@@ -38,7 +38,7 @@ import { UsageError } from './usage.js';
 const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb', texture: 'glb' };
 
 /** @type {Command[]} */
-export const COMMANDS = ['reduce', 'reconstruct', 'simplify', 'inspect', 'prepare', 'merge'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify'];
 const NAMES = `${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`;
 
 /**

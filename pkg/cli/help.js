@@ -11,10 +11,10 @@ import { READ_ROWS } from './read-flags.js';
 const DOES = {
   reduce: 'fewer points that stand for all',
   reconstruct: 'a mesh through the points',
-  simplify: 'any mesh with fewer triangles',
   inspect: 'count, bounds, spacing, noise',
   prepare: 'the object alone: without floor, strays and other things',
   merge: 'scans of one frame as one',
+  simplify: 'any mesh with fewer triangles',
 };
 
 const COMMON = [
@@ -44,9 +44,9 @@ export function overview() {
 
   pointweave reduce scan.ply -o light.ply --ratio 0.2
   pointweave reconstruct scan.ply -o mesh.glb
-  pointweave simplify mesh.ply -o light.glb --triangles 10000
   pointweave inspect scan.ply
   pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
+  pointweave simplify mesh.ply -o light.glb --triangles 10000
 
 Commands, each with --help
 ${rows(commands)}

@@ -40,7 +40,7 @@ const WRITE = {
 };
 
 const SIMPLIFY = {
-  triangles: integer(4, Number.MAX_SAFE_INTEGER),
+  triangles: integer(1, Number.MAX_SAFE_INTEGER),
   error: rule('a number in (0, 1]', (value) => typeof value === 'number' && value > 0 && value <= 1),
 };
 

@@ -28,8 +28,6 @@ use glam::{DVec3, Vec3};
 pub use painted::Painted;
 pub use weld::weld;
 
-/// Fewest triangles that a mesh can be asked for.
-const FEWEST: usize = 4;
 /// Tries to keep to a largest distance.
 const TRIES: usize = 8;
 /// After a try that was too far off, the next is given this share of what would do if the distance were in proportion.
@@ -38,7 +36,7 @@ const CAUTION: f64 = 0.9;
 /// How light a mesh becomes: one of the two, or both.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SimplifyParams {
-    /// At most so many triangles, at least 4. The mesh has at least 98 % of them, or as many as it had.
+    /// At most so many triangles, at least 1. The mesh has at least 98 % of them, or as many as it had.
     pub triangles: Option<usize>,
     /// As few triangles as keep both meshes within this distance of each other, a fraction of the diagonal, above 0 to 1.
     pub error: Option<f64>,
@@ -57,10 +55,10 @@ impl SimplifyParams {
                 "a number of triangles, or error",
                 "neither",
             )),
-            (Some(n), _) if n < FEWEST => Err(Error::bad_option(
+            (Some(0), _) => Err(Error::bad_option(
                 "triangles",
-                "an integer of at least 4",
-                &n.to_string(),
+                "an integer of at least 1",
+                "0",
             )),
             (_, Some(error)) if !fits(error) => Err(Error::bad_option(
                 "error",

@@ -131,7 +131,7 @@ test('the element in one file is not larger than its budget, and names nothing t
 });
 
 /** Most bytes of each part, gzipped. */
-const BUDGET = { single: 384_000, threads: 428_000, files: 185_000, las: 120_000, e57: 146_000, packed: 250_000, pictures: 174_000, exports: 219_000, prepare: 130_000, light: 262_000, samples: 40_000, script: 19_600 };
+const BUDGET = { single: 384_000, threads: 428_000, files: 186_500, las: 120_000, e57: 146_000, packed: 250_000, pictures: 174_000, exports: 219_000, prepare: 130_500, light: 262_000, samples: 40_000, script: 20_600 };
 
 test('nothing is larger than its budget', async () => {
   const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;
