@@ -223,6 +223,23 @@ fn what_is_no_mesh_is_an_error() {
     }
 }
 
+/// A disc of 20,000 triangles around one vertex takes no longer than another mesh.
+#[test]
+fn a_wide_fan_is_no_trap() {
+    let n = 20_000;
+    let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+    let rim = (0..n).flat_map(|i| [angle(i).cos(), angle(i).sin(), 0.0]);
+    let positions: Vec<f64> = [0.0, 0.0, 0.5].into_iter().chain(rim).collect();
+    let triangle = |i: usize| [0, 1 + i as u32, 1 + ((i + 1) % n) as u32];
+    let indices: Vec<u32> = (0..n).flat_map(triangle).collect();
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    let (_, report) = simplify(&cloud, &indices, &fewer(500), &mut Silent).unwrap();
+    assert!(
+        report.triangles <= 500 && report.error.max < 1e-3,
+        "{report:?}"
+    );
+}
+
 /// Two tetrahedra have no triangle to spare.
 #[test]
 fn as_few_as_the_surface_needs_are_said_to_be() {

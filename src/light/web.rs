@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use glam::DVec3;
 
-/// No edge of this many triangles or more is collapsed: a fan so wide makes each look around it dear.
+/// No edge is collapsed whose ends have more triangles than this: a fan so wide makes each look around it dear.
 const WIDEST: usize = 96;
 
 /// What new triangles must keep to.
@@ -22,7 +22,7 @@ pub(crate) struct Web {
     pub(crate) around: Vec<Vec<u32>>,
     /// On an edge of one triangle.
     pub(crate) border: Vec<bool>,
-    /// On an edge of three triangles or more, or in more than one fan: stays as it is.
+    /// On an edge of three triangles or more, in more than one fan, or in a very wide one: stays as it is.
     pub(crate) locked: Vec<bool>,
     /// Triangles that are left.
     pub(crate) left: usize,
@@ -56,6 +56,9 @@ impl Web {
 
     /// Whether a vertex is on a border, and whether it is not inside or on the border of one sheet.
     fn kind(&self, v: u32) -> (bool, bool) {
+        if self.around[v as usize].len() > WIDEST {
+            return (false, true);
+        }
         let sides: Vec<[u32; 2]> = self.sides(v).collect();
         let (mut ends, mut many) = (0, false);
         for w in sides.as_flattened() {
@@ -102,9 +105,12 @@ impl Web {
     /// vertex: the mesh stays of the same topology.
     pub(crate) fn keeps_topology(&mut self, edge: [u32; 2]) -> bool {
         let [a, b] = edge.map(|v| v as usize);
+        if self.locked[a] || self.locked[b] {
+            return false;
+        }
         let triangles = self.of_edge(edge).count();
         let inner = triangles == 2;
-        if self.locked[a] || self.locked[b] || triangles == 0 || triangles > 2 {
+        if triangles == 0 || triangles > 2 {
             return false;
         }
         if inner && self.border[a] && self.border[b]
