@@ -9,7 +9,7 @@ use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
 use pointweave::cloud::Viewpoints;
 use pointweave::report::Source;
-use pointweave::samples::{Model, sample};
+use pointweave::samples::{Model, sample, sample_with_noise};
 use pointweave::{Cloud, ReduceParams, Surface, SurfaceParams, reconstruct, reduce};
 use std::sync::Arc;
 
@@ -305,4 +305,20 @@ fn scans_of_closed_objects_are_not_doubted() {
         }
     }
     assert!(doubted.is_empty(), "{doubted:#?}");
+}
+
+#[test]
+fn few_points_on_thin_walls_agree() {
+    let scan = sample_with_noise(Model::Part, 36_000, 1, 0.0);
+    let cloud = Cloud::from_f32(&scan.positions).unwrap();
+    let params = SurfaceParams {
+        reduce: Some(ReduceParams {
+            target: Target::Ratio(0.05),
+            ..ReduceParams::default()
+        }),
+        ..SurfaceParams::default()
+    };
+    let surface = reconstruct(&cloud, &params, &mut Silent).unwrap();
+    // Walls turned one by one have -0.81.
+    assert!(surface.report.orientation_energy < -0.97);
 }
