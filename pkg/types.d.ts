@@ -8,7 +8,7 @@
 
 import type { ReconstructOptions, ReduceOptions } from './types.options.js';
 import type { PrepareOption, Prepared, Step } from './types.prepare.js';
-import type { ReduceReport, SurfaceReport } from './types.reports.js';
+import type { LightReport, ReduceReport, SurfaceReport } from './types.reports.js';
 
 /** Points with whatever is attached to them; every array has one entry (or triple) a point. */
 export interface PointCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
@@ -64,7 +64,7 @@ export interface Viewpoints {
 }
 
 /** The steps of a call, in the order in which they run. */
-export type Stage = 'read' | 'octree' | 'features' | 'prepare' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report';
+export type Stage = 'read' | 'octree' | 'features' | 'prepare' | 'cluster' | 'place' | 'cells' | 'fit' | 'orient' | 'extract' | 'report' | 'simplify' | 'texture';
 
 export interface Progress {
   stage: Stage;
@@ -113,6 +113,26 @@ export interface ReducedCloud<Positions extends Float32Array | Float64Array = Fl
   report: ReduceReport;
 }
 
+/** Vertices with what they carry, and triangles over them. */
+export interface TriangleMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> extends PointCloud<Positions> {
+  /** Three a triangle. */
+  indices: Uint32Array;
+}
+
+/** How light a mesh becomes: one of the two, or both. */
+export interface SimplifyOptions {
+  /** At most so many triangles, from 1. The mesh has at least 98 % of them, or as many as it had. */
+  triangles?: number;
+  /** As few triangles as keep both meshes within this distance of each other, a fraction of the diagonal, above 0 to 1. */
+  error?: number;
+}
+
+/** A mesh with fewer triangles: what it had, and in its report what that cost. */
+export type Simplified<T> = T & { report: LightCounts & { simplified: LightReport } };
+
+/** What a report says of the triangles that are left. */
+export type LightCounts = Pick<LightReport, 'triangles' | 'components' | 'boundaryEdges' | 'nonManifoldEdges' | 'genus' | 'selfIntersections'>;
+
 export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> {
   /** x y z of each vertex. */
   positions: Positions;
@@ -127,6 +147,12 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   unit?: Unit;
   crs?: Crs;
   faces?: number;
+  /** With `texture`, two a vertex, from 0 to 1: where it is in the pictures, whose first row is at 0. Vertices on cuts are there twice. */
+  uvs?: Float32Array;
+  /** With `texture`, four a vertex: a unit vector, and the sign of the bitangent `cross(normal, tangent)`, as glTF has them. */
+  tangents?: Float32Array;
+  /** With `texture`. */
+  textures?: Partial<Record<'color' | 'normal', Texture>>;
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -139,6 +165,29 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   /** With `prepare`: what the recipe did. */
   prepared?: Pick<Prepared, 'labels' | 'steps'>;
   report: SurfaceReport;
+}
+
+/** A picture on a mesh. */
+export interface Texture {
+  /** In texels. */
+  width: number;
+  height: number;
+  /** The bytes of a file of that type. */
+  data: Uint8Array;
+  type: 'image/png';
+}
+
+/** Of a reconstruction: pictures of what the points show, so that a mesh of few triangles looks like one of many. */
+export interface TextureOption {
+  texture?: {
+    /** Width in texels, 64 to 8192; the height is what the charts need. Default: two texels a point along each axis, 256 to 4096. */
+    size?: number;
+    /**
+     * `'color'`: the colours of the points, where they have any. `'normal'`: the surface as it was before `triangles`, in tangent space.
+     * Default: both.
+     */
+    maps?: ('color' | 'normal')[];
+  };
 }
 
 /** What can be said of a cloud before anything is done to it. Lengths are in the caller's unit. */
@@ -163,6 +212,8 @@ export type Format = 'ply' | 'xyz' | 'pcd' | 'obj' | 'off' | 'stl' | 'glb' | 'la
 
 /** What a file held. Coordinates are the file's: `Float64Array` where single precision would move one by more than 2⁻²² of the diagonal, and for LAS. */
 export interface FileCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> extends PointCloud<Positions> {
+  /** With `faces: 'mesh'`, of a file with faces: three a triangle. */
+  indices?: Uint32Array;
   /**
    * What the columns of a table of text were taken for, as `columns` of {@link ReadOptions} says it: `x y z`, `nx ny nz`,
    * `red green blue`, `rgb` for a packed colour, `-` for one that was passed over, or the attribute's name.
@@ -209,9 +260,10 @@ export interface ReadOptions {
   /**
    * Of a file with faces: `'sample'` (default) takes points from them, evenly over their area and never close together, four a
    * triangle, at least 100,000 and at most 2,000,000, with normals, colours (of vertices, faces, materials and textures) and
-   * attributes; `'vertices'` takes the vertices.
+   * attributes; `'vertices'` takes the vertices; `'mesh'` takes the vertices, with the colours of their faces, and the triangles as
+   * `indices`.
    */
-  faces?: 'sample' | 'vertices';
+  faces?: 'sample' | 'vertices' | 'mesh';
   /** The files that a mesh may name, its material library and pictures: those dropped along, or what gives the data of a name. */
   beside?: Beside;
   /**
@@ -319,10 +371,10 @@ export interface EngineOptions {
    */
   worker?: boolean;
   /**
-   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/`, `prepare/` and `samples/`, or
-   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, a recipe done, or a sample made. Default: beside the package.
+   * The folder that holds `single/`, `threads/`, `files/`, `las/`, `e57/`, `packed/`, `pictures/`, `exports/`, `prepare/`, `light/` and `samples/`, or
+   * an object with the URLs of wasm files; those that it does not name lie beside the package. All but the first two are loaded when a file of theirs is read or written, a recipe done, a mesh made light, or a sample made. Default: beside the package.
    */
-  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; prepare?: string | URL; samples?: string | URL };
+  wasmUrl?: string | URL | { single?: string | URL; threads?: string | URL; files?: string | URL; las?: string | URL; e57?: string | URL; packed?: string | URL; pictures?: string | URL; exports?: string | URL; prepare?: string | URL; light?: string | URL; samples?: string | URL };
   /**
    * The worker's script, `pointweave/worker` or a module that imports it. Default: beside the package. A script on
    * another origin is started through a `blob:` URL.
@@ -347,8 +399,13 @@ export interface Engine {
    * and labels are of their points one cloud after the other.
    */
   prepare<P extends Float32Array | Float64Array>(cloud: PointCloud<P> | PointCloud<P>[], steps: Step[], options?: CallOptions): Promise<Prepared<P>>;
+  /**
+   * Takes any mesh to fewer triangles: of the same topology, with creases and borders where they were. Vertices at one place become
+   * one; they keep normals, colours and attributes. In a mesh of `reconstruct`, the cloud and the report stay, but for its counts.
+   */
+  simplify<T extends TriangleMesh>(mesh: T, options: SimplifyOptions & CallOptions): Promise<Simplified<T>>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & PrepareOption & CallOptions): Promise<ReducedCloud<P>>;
-  reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & CallOptions): Promise<SurfaceMesh<P>>;
+  reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & TextureOption & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
   inspect(cloud: PointCloud, options?: CallOptions): Promise<CloudInfo>;
   /**
@@ -364,6 +421,7 @@ export interface Engine {
 }
 
 export const prepare: Engine['prepare'];
+export const simplify: Engine['simplify'];
 export const reduce: Engine['reduce'];
 export const reconstruct: Engine['reconstruct'];
 export const inspect: Engine['inspect'];

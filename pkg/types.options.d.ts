@@ -163,6 +163,12 @@ export interface ReconstructOptions {
    * - a number: Fraction of the diagonal. The mesh is as dense as the grid everywhere. In [0.0001, 0.25].
    */
   resolution?: number | 'auto';
+  /**
+   * The mesh has at most so many triangles, at least 98 % of them, and of the same topology: edges are collapsed by what
+   * that costs. The report's `simplified` says how far the mesh is then from what it was. At least 1. Default: as many as
+   * the points need.
+   */
+  triangles?: number;
   /** Keep creases in the mesh. Default `true`. */
   sharp?: boolean;
   /**

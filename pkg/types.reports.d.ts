@@ -98,6 +98,30 @@ export interface SurfaceReport extends ReduceReport {
   orientationEnergyBefore: number;
   /** What decided which side is out. */
   orientation: OrientationReport;
+  /**
+   * With `triangles`, what that cost. Counts above are then of the mesh that is left. `distance` is of the surface before: with
+   * `simplified.error` added, it bounds that of the mesh.
+   */
+  simplified?: LightReport;
+}
+
+/** What fewer triangles cost. */
+export interface LightReport {
+  /** Triangles that there were. */
+  from: number;
+  /** Triangles that are left. */
+  triangles: number;
+  /** Between both meshes, fractions of the diagonal: measured from the vertices and the middles of the triangles of each to the other. */
+  error: Distances;
+  components: number;
+  boundaryEdges: number;
+  nonManifoldEdges: number;
+  /** One number a component. */
+  genus: number[];
+  /** Triangles that cross others. */
+  selfIntersections: number;
+  /** Why there are more triangles than were asked for; empty where there are not. */
+  reason: string;
 }
 
 /** A hole of a surface, or the outer rim of an open one. */

@@ -13,6 +13,8 @@
 //!           └ orient      which side is out                           section 4.2, Algorithm 1
 //!             └ mesh        partition of unity, manifold iso-surface  section 4.2, "stitch"      ──► mesh
 //!               └ report      what was lost, measured                 section 5                 ──► report
+//!                 └ light       fewer triangles, where asked for
+//!                   └ texture     colours and normals in pictures
 //! ```
 //!
 //! [`pipeline`] calls them in this order. Each is a folder (a *wing*) whose `mod.rs` says what the stage does, step by step; all
@@ -35,7 +37,7 @@
 #![cfg_attr(
     any(
         not(feature = "stages"),
-        all(feature = "prepare", not(feature = "engine"))
+        all(any(feature = "light", feature = "prepare"), not(feature = "engine"))
     ),
     allow(dead_code)
 )]
@@ -57,6 +59,10 @@ pub mod orient;
 pub mod mesh;
 #[cfg(feature = "stages")]
 pub mod report;
+#[cfg(feature = "light")]
+pub mod light;
+#[cfg(feature = "light")]
+pub mod texture;
 #[cfg(feature = "stages")]
 pub mod pipeline;
 

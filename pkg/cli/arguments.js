@@ -35,10 +35,10 @@ import { UsageError } from './usage.js';
  */
 
 /** The format that a flag is for, and no other. */
-const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb' };
+const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb', texture: 'glb' };
 
 /** @type {Command[]} */
-export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify'];
 const NAMES = `${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`;
 
 /**
@@ -72,7 +72,7 @@ function optionsOf(command) {
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
-    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...PREPARE_FLAGS }),
+    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...(command !== 'simplify' && PREPARE_FLAGS) }),
     ...(command === 'merge' && MERGE_FLAGS),
     ...parserOptions(flagsOf(command)),
   };
@@ -124,12 +124,13 @@ function task(command, values, inputs) {
   const { own, read, write } = optionsFrom(command, values);
   const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write, prepare: preparation(values) };
   if (command === 'prepare' && isEmpty(shared.prepare)) throw new UsageError('what should be cut? --prepare RECIPE, --crop, --drop-strays, --drop-planes, --drop-floor or --keep-largest');
+  if (command === 'simplify' && Object.keys(own).length === 0) throw new UsageError('how light should it be? --triangles N, --error SHARE, or both');
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
-  checkKind(write, format);
+  checkKind({ ...write, texture: own.texture }, format);
   if (command === 'merge') return { ...shared, jobs: [oneOf(inputs, out, shared.json)], format };
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };

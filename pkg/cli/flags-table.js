@@ -27,6 +27,7 @@ export const FLAGS = {
   flip: 'turn the result to its other side',
   propagation: 'how orientation spreads',
   resolution: 'edge length of the mesh, a share of the diagonal',
+  triangles: 'most triangles of the mesh',
   sharp: 'keep creases',
   boundary: 'close the surface, or let it end where points do',
   maxHole: 'widest hole that is closed, a share of the diagonal',

@@ -1,19 +1,19 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
 import { PointweaveError } from '../engine/errors.js';
 import { TARGETS } from '../engine/options-table.js';
-import { TABLES } from '../engine/options.js';
+import { MAPS, TABLES } from '../engine/options.js';
 import { rule } from '../engine/rules.js';
 import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
 /** @import { Rule, Table } from '../engine/rules.js' */
-/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'merge' | 'inspect'} Command */
+/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'simplify' | 'merge' | 'inspect'} Command */
 
 /**
  * @typedef {object} Flag
  * @property {string} name as it is typed, without the dashes
  * @property {string} key the option's name
- * @property {'target' | 'reduce' | 'reconstruct' | 'read' | 'write' | 'none'} group
+ * @property {'target' | 'reduce' | 'reconstruct' | 'simplify' | 'texture' | 'read' | 'write' | 'none'} group
  * @property {Rule} rule
  * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
  * @property {string} words what it does, in one line
@@ -23,12 +23,18 @@ import { UsageError } from './usage.js';
 export const WORDS = {
   ...FLAGS,
   faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
+  texture: 'pictures of the points on the mesh, so many texels wide; for GLB files',
+  maps: 'which pictures',
+  error: 'largest distance between the mesh as it was and as it is, a share of the diagonal',
   up: 'which way is up in the result; default: what its format asks for',
   unit: 'the unit of the result; default: what its format asks for',
   encoding: 'of a PLY file',
   quantize: 'a GLB file with positions rounded to 1/65535 and normals to 1/127, in half the room',
   meshopt: 'a compressed GLB file; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer',
 };
+
+/** `--texture 2048 --maps color,normal`. */
+const TEXTURES = { texture: TABLES.texture.size, maps: rule(`one of or both of ${MAPS.join(',')}`, (value) => typeof value === 'string' && value.split(',').every((name) => MAPS.includes(name))) };
 
 /** `--count auto` is `target: 'auto'`. */
 const AMOUNTS = {
@@ -44,11 +50,12 @@ export function flagsOf(command) {
   const read = flags('read', TABLES.read);
   if (command === 'inspect') return read;
   if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
+  if (command === 'simplify') return [...flags('simplify', TABLES.simplify), ...read.filter(({ key }) => key !== 'faces'), ...flags('write', TABLES.write)];
   const reduce = [...flags('target', AMOUNTS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
-  return [...read, ...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface)] : []), ...flags('write', TABLES.write)];
+  return [...read, ...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface), ...flags('texture', TEXTURES)] : []), ...flags('write', TABLES.write)];
 }
 
 /**
@@ -94,18 +101,22 @@ export function parserOptions(flags) {
  */
 export function optionsFrom(command, values) {
   /** @type {Record<Flag['group'], Record<string, any>>} */
-  const given = { target: {}, reduce: {}, reconstruct: {}, read: {}, write: {}, none: {} };
+  const given = { target: {}, reduce: {}, reconstruct: {}, simplify: {}, texture: {}, read: {}, write: {}, none: {} };
   for (const flag of flagsOf(command)) {
     const value = valueOf(flag, values);
     if (value !== undefined) given[flag.group][flag.key] = value;
   }
+  if (command === 'simplify') return { own: given.simplify, read: given.read, write: given.write };
   const targets = Object.keys(given.target);
   if (targets.length > 1) throw new UsageError(`${targets.map((key) => `--${key}`).join(' and ')} exclude each other`);
   if (targets.length === 1) given.reduce.target = given.target.count === 'auto' ? 'auto' : given.target;
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct }, read: given.read, write: given.write };
+  const { texture: size, maps } = given.texture;
+  if (maps !== undefined && size === undefined) throw new UsageError('--maps says which pictures --texture makes');
+  const texture = size === undefined ? {} : { texture: { size, ...(maps && { maps: maps.split(',') }) } };
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...texture }, read: given.read, write: given.write };
 }
 
 /** @param {Flag} flag @param {Record<string, any>} values */

@@ -10,9 +10,14 @@ export const FORMATS = TABLES.write.format.names;
 /** Those that hold triangles alone. */
 const MESHES_ALONE = ['stl', '3mf'];
 
+/** Whether the results have triangles. @param {Command} command */
+export function isMesh(command) {
+  return command === 'reconstruct' || command === 'simplify';
+}
+
 /** @param {Command} command */
 function formatsOf(command) {
-  return FORMATS.filter((name) => command === 'reconstruct' || !MESHES_ALONE.includes(name));
+  return FORMATS.filter((name) => isMesh(command) || !MESHES_ALONE.includes(name));
 }
 
 /**

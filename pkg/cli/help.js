@@ -1,6 +1,6 @@
 /** What `--help` prints. */
 import { CLOUD_ROWS } from './cloud-flags.js';
-import { FORMATS } from './formats.js';
+import { FORMATS, isMesh } from './formats.js';
 import { flagsOf } from './flags.js';
 import { MERGE_ROWS, PREPARE_ROWS } from './prepare-flags.js';
 import { READ_ROWS } from './read-flags.js';
@@ -14,6 +14,7 @@ const DOES = {
   inspect: 'count, bounds, spacing, noise',
   prepare: 'the object alone: without floor, strays and other things',
   merge: 'several scans as one',
+  simplify: 'any mesh with fewer triangles',
 };
 
 const COMMON = [
@@ -31,7 +32,8 @@ const OUTPUT = [
 const SECTIONS = [
   [['target'], 'How much is kept, one of'],
   [['reduce', 'none'], 'Reduction'],
-  [['reconstruct'], 'Surface'],
+  [['reconstruct', 'texture'], 'Surface'],
+  [['simplify'], 'How light it becomes, one of or both'],
   [['write'], 'File'],
 ];
 
@@ -44,6 +46,7 @@ export function overview() {
   pointweave reconstruct scan.ply -o mesh.glb
   pointweave inspect scan.ply
   pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
+  pointweave simplify mesh.ply -o light.glb --triangles 10000
 
 Commands, each with --help
 ${rows(commands)}
@@ -54,13 +57,13 @@ ${rows(commands)}
 /** @param {Command} command */
 export function help(command) {
   const flags = flagsOf(command);
-  const output = command === 'inspect' ? '' : ` -o result.${command === 'reconstruct' ? 'glb' : 'ply'} [options]`;
+  const output = command === 'inspect' ? '' : ` -o result.${isMesh(command) ? 'glb' : 'ply'} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
   const works = command !== 'inspect';
-  const listed = [...sections, ['Before', works ? [...(command === 'merge' ? MERGE_ROWS : []), ...PREPARE_ROWS] : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
+  const listed = [...sections, ['Before', works && command !== 'simplify' ? [...(command === 'merge' ? MERGE_ROWS : []), ...PREPARE_ROWS] : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   const several = `  pointweave ${command} a.ply b.ply${command === 'inspect' ? '' : ' --out-dir results'}\n  - reads standard input`;
-  const usage = command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} scan.ply${output}\n${several}`;
+  const usage = command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} ${command === 'simplify' ? 'mesh' : 'scan'}.ply${output}\n${several}`;
   return `pointweave ${command}: ${DOES[command]}
 
 ${usage}

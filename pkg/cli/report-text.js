@@ -2,7 +2,7 @@
 import { sideInWords } from '../engine/side.js';
 import { skippedInWords } from '../files/skipped.js';
 
-/** @import { CloudInfo, FileCloud, ReduceReport, StepReport, SurfaceReport } from '../types.js' */
+/** @import { CloudInfo, FileCloud, LightReport, ReduceReport, StepReport, SurfaceReport } from '../types.js' */
 
 /** @param {number} count */
 const whole = (count) => count.toLocaleString('en-US');
@@ -23,7 +23,14 @@ export function reportLine(report, { skipped }) {
   const side = 'orientation' in report ? `; ${sideInWords(report)}` : '';
   const out = skippedInWords(skipped);
   const left = out ? `; left out: ${out}` : '';
-  return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${side}${left}`;
+  const light = 'simplified' in report && report.simplified ? `; ${lightLine(report.simplified)}` : '';
+  return `${whole(inputPoints)} → ${pointsOf(outputPoints)}${mesh}, ${error}, ${(totalMs / 1000).toFixed(1)} s${side}${light}${left}`;
+}
+
+/** @param {LightReport} report */
+export function lightLine({ from, triangles, error }) {
+  const off = (/** @type {number} */ share) => `${short(100 * share, 2)} %`;
+  return `${whole(from)} → ${whole(triangles)} triangles, ${off(error.rms)} of the diagonal off (rms), ${off(error.max)} at most`;
 }
 
 /**
@@ -49,8 +56,9 @@ export function reasonLines(steps, inputs = []) {
 }
 
 /** @param {ReduceReport | SurfaceReport} report */
-export function doubtLines({ doubts }) {
-  return doubts.map(({ message }) => `doubtful: ${message}`);
+export function doubtLines(report) {
+  const reason = 'simplified' in report && report.simplified?.reason;
+  return [...report.doubts.map(({ message }) => `doubtful: ${message}`), ...(reason ? [reason] : [])];
 }
 
 /**

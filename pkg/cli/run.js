@@ -6,7 +6,7 @@ import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { stepsOf } from './prepare-flags.js';
-import { doubtLines, infoLines, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
+import { doubtLines, infoLines, lightLine, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
 import { UsageError } from './usage.js';
 
 /** @import { Engine } from '../types.js' */
@@ -103,6 +103,14 @@ async function perform(engine, task, job, watch) {
     const report = { inputPoints: count, outputPoints: prepared.kept.length, steps: told(prepared.steps) };
     return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps, inputs) };
   }
+  if (command === 'simplify') {
+    const { indices } = cloud;
+    if (!indices) throw new PointweaveError({ code: 'needs-triangles', message: 'the file has no triangles: reconstruct makes a mesh of points' });
+    const mesh = await engine.simplify({ ...withSaid(cloud, said), indices }, { ...own, ...watch, transfer: true });
+    await save(engine, task, output, mesh, watch);
+    const { simplified } = mesh.report;
+    return { report: simplified, text: lightLine(simplified), doubts: simplified.reason ? [simplified.reason] : [] };
+  }
   const prepare = steps.length > 0 ? { prepare: steps } : {};
   const result = await engine[command](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
   await save(engine, task, output, result, watch);
@@ -118,9 +126,9 @@ async function perform(engine, task, job, watch) {
  * @param {string} input
  * @param {{ signal: AbortSignal, onProgress: (progress: import('../types.js').Progress) => void }} watch
  */
-async function scanOf(engine, { read }, input, watch) {
+async function scanOf(engine, { command, read }, input, watch) {
   const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await openInput(input, watch.signal), { name, beside: besideOf(input), ...read, ...watch, transfer: true });
+  const cloud = await engine.read(await openInput(input, watch.signal), { name, beside: besideOf(input), ...(command === 'simplify' && { faces: 'mesh' }), ...read, ...watch, transfer: true });
   if (cloud.positions.length === 0 && cloud.file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(cloud.file.dropped)}, none of them finite` });
   }

@@ -29,6 +29,8 @@ export const WORDS = {
     orient: 'Finding out what is inside',
     extract: 'Weaving the triangles',
     report: 'Measuring the result',
+    simplify: 'Making it light',
+    texture: 'Painting it',
   },
   errors: {
     'load-failed': 'This could not be loaded',

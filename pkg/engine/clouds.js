@@ -56,9 +56,12 @@ function badLength(array, expected, found) {
  */
 export function resultArgument(result, transfer) {
   const given = fields(result, 'result');
-  const { indices } = given;
+  const { indices, uvs, tangents, textures } = given;
   if (indices !== undefined) expectArray('indices', indices, Uint32Array);
-  return own({ indices, ...cloudFields(given) }, transfer);
+  for (const [name, values] of Object.entries({ uvs, tangents })) if (values !== undefined) expectArray(name, values, Float32Array);
+  const [colorPicture, normalPicture] = ['color', 'normal'].map((name) => textures?.[name]?.data);
+  for (const [name, data] of Object.entries({ color: colorPicture, normal: normalPicture })) if (data !== undefined) expectArray(`textures.${name}.data`, data, Uint8Array);
+  return own({ indices, uvs, tangents, colorPicture, normalPicture, ...cloudFields(given) }, transfer);
 }
 
 /**

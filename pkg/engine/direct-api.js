@@ -1,6 +1,6 @@
 /**
  * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
- * `prepare`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
+ * `prepare`, `simplify`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
  */
 import { counted } from './amount.js';
 import { direction } from './axes.js';
@@ -8,6 +8,7 @@ import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
+import { lightened, meshArgument } from './light.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, lookedAt, preparedArgument, preparedOf } from './preparing.js';
@@ -37,7 +38,7 @@ function withCount(cloud, own) {
 }
 
 /** Calls that wait for wasm of their own. @type {Record<string, (place: Place, ...given: [any, any, any]) => Promise<any>>} */
-const WAITING = { prepare, read, write, sample };
+const WAITING = { prepare, simplify, read, write, sample };
 
 /**
  * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadBindings'>} platform
@@ -78,6 +79,8 @@ function run(core, call, subject, options) {
   const { own: { prepare, ...own }, transfer, signal, onProgress } = checkOptions(call, options);
   signal?.throwIfAborted();
   if (prepare) throw badOption('prepare', "undefined: call prepare before, as it waits for its wasm", prepare);
+  if (own.triangles !== undefined) throw badOption('triangles', "undefined: call simplify after, as it waits for its wasm", own.triangles);
+  if (own.texture) throw badOption('texture', 'undefined: only an engine makes textures, as their wasm has to be waited for', own.texture);
   if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
   return signed(runHere(core, { call, args: ARGUMENTS[call](subject, own, transfer) }, { signal, onProgress }), CHOICE);
 }
@@ -105,6 +108,14 @@ async function prepare(place, cloud, steps, options) {
   const given = preparedArgument(cloud, recipe, transfer);
   const args = [lookedAt(given), recipe];
   return withModule(place, 'prepare', watch, async (ask) => preparedOf(given, await ask({ call: 'prepare', args })));
+}
+
+/** @param {Place} place @param {any} mesh @param {unknown} options */
+async function simplify(place, mesh, options) {
+  const { own, transfer, ...watch } = checkOptions('simplify', options);
+  watch.signal?.throwIfAborted();
+  const args = [meshArgument(mesh, transfer), own];
+  return withModule(place, 'light', watch, async (ask) => lightened(mesh, await ask({ call: 'simplify', args })));
 }
 
 /** @param {Place} place @param {any} data @param {unknown} options */

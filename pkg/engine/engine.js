@@ -6,12 +6,13 @@ import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
+import { left, lightened, meshArgument, ownMesh, shownPoints } from './light.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
-import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf } from './preparing.js';
+import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf, split } from './preparing.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -37,6 +38,11 @@ import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 /** More threads than this cost memory and gain nothing. */
 const MOST_AUTO_THREADS = 16;
+
+/** About how much of a reconstruction with `triangles` is over when they are counted. */
+const LIGHT = 0.85;
+/** The same of one with `texture`. */
+const TEXTURED = 0.6;
 
 /** How long a host without a call keeps its workers and memory; to start anew takes some tenths of a second. */
 const IDLE_MS = 60_000;
@@ -108,7 +114,7 @@ export class Engine {
   /**
    * @template {Float32Array | Float64Array} P
    * @param {PointCloud<P>} cloud
-   * @param {ReconstructOptions & PrepareOption & CallOptions} [options]
+   * @param {ReconstructOptions & PrepareOption & import('../types.js').TextureOption & CallOptions} [options]
    * @returns {Promise<SurfaceMesh<P>>}
    */
   async reconstruct(cloud, options) {
@@ -126,6 +132,18 @@ export class Engine {
     const { transfer, ...watch } = this.#check('prepare', options);
     const recipe = checkRecipe(steps);
     return this.#prepared(preparedArgument(cloud, recipe, transfer), recipe, watch);
+  }
+
+  /**
+   * @template {import('../types.js').TriangleMesh} T
+   * @param {T} mesh
+   * @param {import('../types.js').SimplifyOptions & CallOptions} options
+   * @returns {Promise<import('../types.js').Simplified<T>>}
+   */
+  async simplify(mesh, options) {
+    const { own, transfer, ...watch } = this.#check('simplify', options);
+    const args = [meshArgument(mesh, transfer), own];
+    return lightened(mesh, await this.#runIn('light', { call: 'simplify', args }, watch));
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
@@ -235,6 +253,27 @@ export class Engine {
   async #compute(call, cloud, options) {
     const { own: { prepare, ...own }, transfer, ...watch } = this.#check(call, options);
     const given = cloudArgument(cloud, transfer);
+    const { texture, ...engineOwn } = own;
+    const { triangles } = own;
+    if (triangles === undefined && !texture) return this.#made(call, given, own, prepare, watch);
+    const [first, second] = split(watch, texture ? TEXTURED : LIGHT);
+    const points = texture && shownPoints(given);
+    const mesh = await this.#made(call, given, engineOwn, prepare, first);
+    const request = texture
+      ? { call: /** @type {const} */ ('texture'), args: [ownMesh(mesh), left(points, mesh), { triangles, ...texture }] }
+      : { call: /** @type {const} */ ('simplify'), args: [ownMesh(mesh), { triangles }] };
+    return lightened(mesh, await this.#runIn('light', request, second));
+  }
+
+  /**
+   * @param {'reduce' | 'reconstruct'} call
+   * @param {PointCloud} given
+   * @param {Record<string, any>} own
+   * @param {import('../types.js').Step[] | undefined} prepare
+   * @param {Watch} watch
+   * @returns {Promise<any>}
+   */
+  async #made(call, given, own, prepare, watch) {
     if (!prepare) return this.#run({ call, args: [given, counted(own, given)] }, watch);
     const [first, second] = halves(watch);
     const prepared = await this.#prepared([given], prepare, first);

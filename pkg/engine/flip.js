@@ -10,13 +10,13 @@ import { PointweaveError } from './errors.js';
  * @returns {T}
  */
 export function flip(mesh, { triangle } = {}) {
-  const { positions, normals, indices, cloud } = mesh ?? {};
+  const { positions, normals, tangents, indices, cloud } = mesh ?? {};
   if (!(indices instanceof Uint32Array && cloud)) {
     const expected = 'a mesh of reconstruct';
     throw new PointweaveError({ code: 'bad-input', message: `expected ${expected}`, expected, found: typeof mesh });
   }
   if (triangle === undefined) {
-    return { ...mesh, indices: wound(indices, () => true), normals: turned(normals, () => true), cloud: { ...cloud, normals: turned(cloud.normals, () => true) } };
+    return { ...mesh, indices: wound(indices, () => true), normals: turned(normals, () => true), ...(tangents && { tangents: turned(tangents, () => true, 4) }), cloud: { ...cloud, normals: turned(cloud.normals, () => true) } };
   }
   const triangles = indices.length / 3;
   if (!(Number.isInteger(triangle) && triangle >= 0 && triangle < triangles)) {
@@ -31,6 +31,8 @@ export function flip(mesh, { triangle } = {}) {
     ...mesh,
     indices: wound(indices, isIn),
     normals: turned(normals, isIn),
+    // Then a picture of normals is still right.
+    ...(tangents && { tangents: turned(tangents, isIn, 4) }),
     cloud: { ...cloud, normals: turned(cloud.normals, (point) => isIn(near(point))) },
   };
 }
@@ -45,10 +47,10 @@ function wound(indices, chosen) {
 }
 
 /** @param {Float32Array} normals @param {(index: number) => boolean} chosen */
-function turned(normals, chosen) {
+function turned(normals, chosen, each = 3) {
   const other = normals.slice();
-  for (let i = 0; i < other.length / 3; i++) {
-    if (chosen(i)) for (let k = 3 * i; k < 3 * i + 3; k++) other[k] = -other[k];
+  for (let i = 0; i < other.length / each; i++) {
+    if (chosen(i)) for (let k = each * i; k < each * (i + 1); k++) other[k] = -other[k];
   }
   return other;
 }

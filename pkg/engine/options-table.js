@@ -37,6 +37,7 @@ export const RECONSTRUCT = {
   flip: toggle(false),
   propagation: choice('global', 'paper'),
   resolution: number(0.0001, 0.25, { or: 'auto', fallback: 'auto' }),
+  triangles: integer(1, 0xffffffff),
   sharp: toggle(true),
   boundary: choice('auto', 'closed', 'open'),
   maxHole: number(0, 1, { or: 'auto', fallback: 'auto' }),

@@ -21,7 +21,7 @@ const RECONSTRUCT = { ...TABLE.RECONSTRUCT, reduce: nested('reduce', REDUCE) };
 const READ = {
   name: rule('a file name', (value) => typeof value === 'string'),
   format: { ...choice('ply', 'xyz', 'pcd', 'obj', 'off', 'stl', 'glb', 'las', 'e57', 'ptx', 'grid', 'tif', '3mf', 'splat', 'spz'), fallback: undefined },
-  faces: choice('sample', 'vertices'),
+  faces: choice('sample', 'vertices', 'mesh'),
   beside: rule('an array of Files, or a function that gives the data of a name', (value) => typeof value === 'function' || (Array.isArray(value) && value.every((file) => typeof file?.name === 'string'))),
   columns: rule('an array of column names with x, y and z', (value) => Array.isArray(value) && value.every((name) => typeof name === 'string')),
   delimiter: rule("one character, ' ' for blanks", (value) => typeof value === 'string' && value.length === 1),
@@ -39,6 +39,19 @@ const WRITE = {
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
 
+const SIMPLIFY = {
+  triangles: integer(1, Number.MAX_SAFE_INTEGER),
+  error: rule('a number in (0, 1]', (value) => typeof value === 'number' && value > 0 && value <= 1),
+};
+
+/** The pictures that a mesh can have. */
+export const MAPS = ['color', 'normal'];
+
+const TEXTURE = {
+  size: integer(64, 8192),
+  maps: rule(`an array of ${MAPS.map((name) => `'${name}'`).join(' and ')}`, (value) => Array.isArray(value) && value.every((name) => MAPS.includes(name))),
+};
+
 const MODEL = choice('duck', 'pig', 'part', 'desk');
 
 const SAMPLE = {
@@ -48,7 +61,7 @@ const SAMPLE = {
 };
 
 /** Folders of `pkg/wasm`. */
-const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'samples'];
+const BUILDS = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'light', 'samples'];
 
 export const ENGINE = {
   threads: rule("'auto' or an integer from 1 to 64", (value) => value === 'auto' || integer(1, 64).accepts(value, ''), 'auto'),
@@ -70,8 +83,11 @@ const CALL = {
 /** Of a reduction and a reconstruction: what is done to the scan before. */
 const FIRST = { prepare: RECIPE };
 
+/** Of a reconstruction: what is done to the mesh after. */
+const LAST = { texture: nested('texture', TEXTURE) };
+
 /** The command line has its flags from here. */
-export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: TEXTURE, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.
@@ -86,9 +102,10 @@ export const DEFAULTS = deepFreeze({ reduce: defaultsOf(REDUCE), reconstruct: de
  * @returns {{ own: Record<string, any>, signal?: AbortSignal, onProgress?: (progress: any) => void, transfer?: boolean }}
  */
 export function checkOptions(call, options = {}) {
-  const table = call === 'reduce' || call === 'reconstruct' ? { ...TABLES[call], ...FIRST, ...CALL } : { ...TABLES[call], ...CALL };
+  const table = call === 'reduce' || call === 'reconstruct' ? { ...TABLES[call], ...FIRST, ...(call === 'reconstruct' && LAST), ...CALL } : { ...TABLES[call], ...CALL };
   const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
+  if (call === 'simplify' && own.triangles === undefined && own.error === undefined) throw badOption('triangles', 'a number of triangles, or error', undefined);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }
 

@@ -45,6 +45,7 @@ function wasmFile(build, given) {
     pictures: () => new URL('../wasm/pictures/pointweave_bg.wasm', import.meta.url),
     exports: () => new URL('../wasm/exports/pointweave_bg.wasm', import.meta.url),
     prepare: () => new URL('../wasm/prepare/pointweave_bg.wasm', import.meta.url),
+    light: () => new URL('../wasm/light/pointweave_bg.wasm', import.meta.url),
     samples: () => new URL('../wasm/samples/pointweave_bg.wasm', import.meta.url),
   }[build]();
   if (!given) return file.href;

@@ -120,10 +120,20 @@ function spread(values, kept, into) {
  * @param {Watch} watch
  * @returns {[Watch, Watch]}
  */
-export function halves({ signal, onProgress }) {
+export function halves(watch) {
+  return split(watch, SHARE);
+}
+
+/**
+ * A call of two steps, the first of which takes about this share of its time.
+ * @param {Watch} watch
+ * @param {number} share
+ * @returns {[Watch, Watch]}
+ */
+export function split({ signal, onProgress }, share) {
   const part = (/** @type {number} */ from, /** @type {number} */ to) => ({
     signal,
     onProgress: onProgress && ((/** @type {import('../types.js').Progress} */ progress) => onProgress({ ...progress, overall: from + (to - from) * progress.overall })),
   });
-  return [part(0, SHARE), part(SHARE, 1)];
+  return [part(0, share), part(share, 1)];
 }

@@ -10,6 +10,8 @@ const SHARES = {
     ['octree', 1], ['features', 22], ['cluster', 25], ['place', 3],
     ['cells', 9], ['fit', 12], ['orient', 3], ['extract', 22], ['report', 3],
   ],
+  simplify: [['simplify', 100]],
+  texture: [['simplify', 25], ['texture', 75]],
   inspect: [['octree', 10], ['features', 90]],
 };
 

@@ -11,6 +11,7 @@ const MODULES = {
   pictures: () => import('../wasm/pictures/pointweave.js'),
   exports: () => import('../wasm/exports/pointweave.js'),
   prepare: () => import('../wasm/prepare/pointweave.js'),
+  light: () => import('../wasm/light/pointweave.js'),
   samples: () => import('../wasm/samples/pointweave.js'),
 };
 

@@ -11,7 +11,7 @@ import { PointweaveError } from '../engine/errors.js';
 
 /**
  * What a caller says of a file.
- * @typedef {{ name?: string, format?: Format, columns?: string[], delimiter?: string, decimal?: string, skip?: number, sentinels?: 'drop' | 'keep', faces?: 'sample' | 'vertices' }} ReadingOptions
+ * @typedef {{ name?: string, format?: Format, columns?: string[], delimiter?: string, decimal?: string, skip?: number, sentinels?: 'drop' | 'keep', faces?: 'sample' | 'vertices' | 'mesh' }} ReadingOptions
  */
 
 /** How the files start whose reader is a build of its own, and the formats' names. @type {[string, Format, Reader][]} */
@@ -84,13 +84,13 @@ export async function readFile(ask, file, options, { signal, onProgress }, { fin
     tell((at / file.size) * (columns.points > 0 ? 0.99 : 0.5));
   }
   for (;;) {
-    /** @type {{ block?: Block, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
-    const { block, summary, want } = await ask({ call: 'readEnd', args: [] });
+    /** @type {{ block?: Block, indices?: Uint32Array, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
+    const { block, indices, summary, want } = await ask({ call: 'readEnd', args: [] });
     const expected = add(block, file.size);
     if (summary) {
       const cloud = columns.finish(summary);
       tell(1);
-      return cloud;
+      return indices ? { ...cloud, indices } : cloud;
     }
     if (want?.file !== undefined) await ask({ call: 'readFile', args: [await find(want.file)] });
     if (want?.picture) {

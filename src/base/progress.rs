@@ -29,6 +29,12 @@ pub enum Stage {
     Extract,
     /// Distances and topology.
     Report,
+    /// Fewer triangles.
+    #[cfg(feature = "light")]
+    Simplify,
+    /// Pictures of colours and normals.
+    #[cfg(feature = "light")]
+    Texture,
 }
 
 impl Stage {
@@ -45,6 +51,10 @@ impl Stage {
             Stage::Orient => "orient",
             Stage::Extract => "extract",
             Stage::Report => "report",
+            #[cfg(feature = "light")]
+            Stage::Simplify => "simplify",
+            #[cfg(feature = "light")]
+            Stage::Texture => "texture",
         }
     }
 }

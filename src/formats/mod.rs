@@ -84,7 +84,7 @@ pub use options::ReadOptions;
 pub use packed::{Archive, Entry};
 pub use pictures::decode as decode_picture;
 pub use preview::Preview;
-pub use raw_cloud::{Positions, RawCloud};
+pub use raw_cloud::{Positions, RawCloud, Skin};
 pub use reading::{Reading, Summary};
 pub use sentinels::LeftOut;
 pub use stations::{Run, Stations};

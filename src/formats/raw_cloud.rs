@@ -37,6 +37,19 @@ impl Positions {
     }
 }
 
+/// Pictures on a mesh, and where its vertices are in them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Skin {
+    /// Two a point, 0 to 1; the first row of a picture is at 0.
+    pub uvs: Vec<f32>,
+    /// Four a point: a unit vector, and the sign of the bitangent.
+    pub tangents: Option<Vec<f32>>,
+    /// The colours, as the bytes of a PNG file.
+    pub color: Option<Vec<u8>>,
+    /// The normals in the tangents' frames, as the bytes of a PNG file.
+    pub normal: Option<Vec<u8>>,
+}
+
 /// What a file holds, in the file's frame and unit: the caller's arrays, not yet a [`Cloud`]. May have no points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawCloud {
@@ -64,6 +77,9 @@ pub struct RawCloud {
     pub dropped: usize,
     /// Values of colours, normals and attributes that were not finite and are now 0.
     pub replaced: usize,
+    /// What a mesh wears besides.
+    #[cfg(feature = "exports")]
+    pub skin: Option<Box<Skin>>,
     /// Faces that the file says it has.
     pub faces: u64,
     /// What was made of them.
@@ -93,6 +109,8 @@ impl RawCloud {
             crs: None,
             dropped: 0,
             replaced: 0,
+            #[cfg(feature = "exports")]
+            skin: None,
             faces: 0,
             sampling: Sampling::default(),
             skipped: Vec::new(),
@@ -185,13 +203,26 @@ impl RawCloud {
         Ok(cloud.with_seen_from_above(self.seen_from_above))
     }
 
+    /// Builds without writers have none.
+    pub(super) fn skin(&self) -> Option<&Skin> {
+        #[cfg(feature = "exports")]
+        let skin = self.skin.as_deref();
+        #[cfg(not(feature = "exports"))]
+        let skin = None;
+        skin
+    }
+
     /// Checks that every array has one entry a point.
     pub(super) fn check_lengths(&self) -> Result<()> {
         let points = self.points();
+        let skin = self.skin();
+        let tangents = skin.and_then(|skin| skin.tangents.as_ref());
         let arrays = [
             ("positions", Some(self.positions.len()), 3),
             ("colors", self.colors.as_ref().map(Vec::len), 3),
             ("normals", self.normals.as_ref().map(Vec::len), 3),
+            ("uvs", skin.map(|skin| skin.uvs.len()), 2),
+            ("tangents", tangents.map(Vec::len), 4),
         ];
         let attributes = self
             .attributes

@@ -36,6 +36,8 @@ pub struct Reading {
     /// What they are as triangles.
     triangles: u64,
     sampled: Sampling,
+    /// The triangles, where they come along.
+    indices: Vec<u32>,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
     /// What the parser has not taken yet, and where it starts.
@@ -92,6 +94,7 @@ impl Reading {
             faces: None,
             triangles: 0,
             sampled: Sampling::default(),
+            indices: Vec::new(),
             parser: None,
             table: None,
             kept: Vec::new(),
@@ -108,6 +111,8 @@ impl Reading {
     pub fn with_options(mut self, options: ReadOptions) -> Result<Reading> {
         options.check()?;
         self.options = options;
+        // A mesh keeps its vertices.
+        self.options.keep_sentinels |= self.options.faces == FaceMode::Mesh;
         Ok(self)
     }
 
@@ -169,7 +174,12 @@ impl Reading {
         self.parser.as_ref().and_then(|parser| parser.preview())
     }
 
-    /// Puts points of the faces in the place of the vertices.
+    /// The triangles over the points, three indices each; none unless [`FaceMode::Mesh`] asks for them.
+    pub fn take_indices(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.indices)
+    }
+
+    /// Puts points of the faces in the place of the vertices, or the triangles beside them.
     fn sample(&mut self) {
         let Some(faces) = self.faces.take().filter(|_| HAVE_FACES) else {
             return;
@@ -180,6 +190,14 @@ impl Reading {
         let gone = vertices.gone.take().unwrap_or_default();
         let (dropped, replaced, invalid) = (vertices.dropped, vertices.replaced, vertices.invalid);
         let cloud = vertices.finish(true);
+        if self.options.faces == FaceMode::Mesh {
+            let (cloud, indices, sampled) = faces::mesh(faces, cloud, &gone);
+            let mut table = Table::of(cloud);
+            (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
+            (self.indices, self.sampled) = (indices, sampled);
+            self.table = Some(table);
+            return;
+        }
         let (table, sampled) = faces::sample(faces, &cloud, &gone);
         let mut table = table.unwrap_or_else(|| Table::of(cloud));
         (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
@@ -382,7 +400,7 @@ impl Reading {
     )
 )]
 fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
-    let faces = || (options.faces == FaceMode::Sample).then(Faces::default);
+    let faces = || (options.faces != FaceMode::Vertices).then(Faces::default);
     Ok(match format {
         #[cfg(feature = "files")]
         Format::Ply => Box::new(ply::Ply::new(faces())),

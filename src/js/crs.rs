@@ -19,7 +19,12 @@ extern "C" {
     fn ascii(this: &PointCrs) -> Option<String>;
 }
 
-#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "exports",
+    feature = "light",
+    feature = "prepare"
+))]
 impl PointCrs {
     pub(crate) fn read(&self) -> Crs {
         Crs {

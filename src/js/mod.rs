@@ -1,7 +1,7 @@
 //! The border to JavaScript: arguments checked and taken, a call of the crate, results handed over. No algorithm is here.
 //!
 //! 1. `wasm`: the engine's calls: reduce, reconstruct, inspect. `wasm_read`: readers, slice by slice. `wasm_write`: writers.
-//!    `wasm_prepare`: recipes. `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
+//!    `wasm_prepare`: recipes. `wasm_light`: meshes with fewer triangles. `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
 //! 2. `values`: options of a call, and reports. `progress`: who hears of it. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
 //! 3. This file is what all of them need: panics kept, errors thrown as objects, objects made.
 //!
@@ -10,23 +10,36 @@
 //!
 //! **Cost**: one copy of each array in each direction.
 
-#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "exports",
+    feature = "light",
+    feature = "prepare"
+))]
 pub mod clouds;
 #[cfg(any(
     feature = "engine",
     feature = "exports",
     feature = "las",
+    feature = "light",
     feature = "prepare"
 ))]
 mod crs;
-#[cfg(any(feature = "engine", feature = "prepare"))]
+#[cfg(any(feature = "engine", feature = "light", feature = "prepare"))]
 mod progress;
-#[cfg(any(feature = "engine", feature = "prepare"))]
+#[cfg(any(feature = "engine", feature = "light", feature = "prepare"))]
 mod values;
-#[cfg(any(feature = "engine", feature = "exports", feature = "prepare"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "exports",
+    feature = "light",
+    feature = "prepare"
+))]
 mod viewpoints;
 #[cfg(feature = "engine")]
 pub mod wasm;
+#[cfg(feature = "light")]
+pub mod wasm_light;
 #[cfg(feature = "pictures")]
 pub mod wasm_pictures;
 #[cfg(feature = "prepare")]
@@ -108,6 +121,7 @@ pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     feature = "e57",
     feature = "files",
     feature = "las",
+    feature = "light",
     feature = "packed",
     feature = "prepare"
 ))]

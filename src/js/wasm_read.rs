@@ -60,6 +60,7 @@ fn read_options(options: &JsValue) -> Result<ReadOptions, JsValue> {
         keep_sentinels: get("sentinels")?.as_string().as_deref() == Some("keep"),
         faces: match get("faces")?.as_string().as_deref() {
             Some("vertices") => FaceMode::Vertices,
+            Some("mesh") => FaceMode::Mesh,
             _ => FaceMode::Sample,
         },
     })
@@ -97,7 +98,7 @@ pub fn read_push(bytes: &[u8]) -> JsResult {
     })
 }
 
-/// After the last bytes: `{ block, summary, want }`: the second when all is read, the last where something else is needed for
+/// After the last bytes: `{ block, indices, summary, want }`: the triangles where they come along, the summary when all is read, the last where something else is needed for
 /// that: `{ file }` by its name, which [`read_file`] gives, or the pixels of a `{ picture }`'s bytes, which [`read_picture`] gives.
 #[wasm_bindgen(js_name = readEnd)]
 pub fn read_end() -> JsResult {
@@ -113,8 +114,17 @@ pub fn read_end() -> JsResult {
             }
             None => JsValue::UNDEFINED,
         };
+        let indices = match summary.is_undefined() {
+            true => Vec::new(),
+            false => reading.take_indices(),
+        };
+        let indices = (!indices.is_empty()).then_some(indices);
         object([
             ("block", block(reading)?),
+            (
+                "indices",
+                optional(&indices, |indices| Uint32Array::from(&indices[..])),
+            ),
             ("summary", summary),
             ("want", want),
         ])

@@ -2,7 +2,7 @@
 
 use crate::base::error::Error;
 use crate::cloud::Unit;
-use crate::formats::{self, Output, WriteOptions};
+use crate::formats::{self, Output, Skin, WriteOptions};
 use crate::js::clouds::{PointCloud, triple};
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -43,6 +43,15 @@ pub fn write(result: &PointCloud, options: &WriteSettings) -> Result<Uint8Array,
         unit: options.unit().as_deref().map(named).transpose()?,
     };
     let indices = result.indices().map(|indices| indices.to_vec());
-    let bytes = formats::write(&result.read()?, indices.as_deref(), format, options)?;
+    let mut cloud = result.read()?;
+    cloud.skin = result.uvs().map(|uvs| {
+        Box::new(Skin {
+            uvs: uvs.to_vec(),
+            tangents: result.tangents().map(|values| values.to_vec()),
+            color: result.color_picture().map(|bytes| bytes.to_vec()),
+            normal: result.normal_picture().map(|bytes| bytes.to_vec()),
+        })
+    });
+    let bytes = formats::write(&cloud, indices.as_deref(), format, options)?;
     Ok(Uint8Array::from(&bytes[..]))
 }

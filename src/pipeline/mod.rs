@@ -8,12 +8,17 @@
 //!   [`crate::orient`], [`crate::mesh`], [`crate::report`]. [`reconstruct_again`] remembers in a [`Memory`] what another call for
 //!   the same cloud needs not do again.
 //!
+//! - [`simplify()`] takes any mesh to fewer triangles ([`mod@crate::light`]), and so does `reconstruct` with `triangles`.
+//!   [`texture()`] puts what is lost into pictures ([`mod@crate::texture`]).
+//!
 //! The variants that own their cloud need 12 bytes a point less. **In**: a [`crate::Cloud`], in the unit frame of its own. **Out**:
 //! results in that frame, with functions that give the caller's.
 
 mod doubtful;
 mod input;
 mod inspect;
+#[cfg(feature = "light")]
+mod light;
 mod memory;
 mod prepare;
 mod reconstruct;
@@ -24,6 +29,8 @@ mod sites;
 mod step_reports;
 
 pub use inspect::{Bounds, CloudInfo, inspect};
+#[cfg(feature = "light")]
+pub use light::{simplify, texture};
 pub use memory::Memory;
 pub use prepare::{Prepared, prepare, prepare_scans};
 pub use reconstruct::{reconstruct, reconstruct_again, reconstruct_owned};

@@ -18,6 +18,8 @@ use crate::mesh::{ExtractParams, Extracted, extract};
 use crate::orient;
 use crate::pipeline::doubtful::{invented, thin};
 use crate::pipeline::input::{Input, Origin, check_attributes};
+#[cfg(feature = "light")]
+use crate::pipeline::light::lighten;
 use crate::pipeline::memory::Memory;
 use crate::pipeline::reduce::{near_stats, reduce_report};
 use crate::pipeline::results::{Distances, ReducedCloud, Surface};
@@ -290,16 +292,23 @@ fn surface(
         orientation_energy: signs.energy,
         orientation_energy_before: signs.energy_before,
         orientation: signs.account,
+        #[cfg(feature = "light")]
+        simplified: None,
     };
     let cloud = ReducedCloud { reduced, report };
-    Ok(Surface {
+    let surface = Surface {
         mesh,
         colors,
         attributes,
         cloud,
         distances,
         report: surface_report,
-    })
+    };
+    #[cfg(feature = "light")]
+    if let Some(triangles) = params.triangles {
+        return lighten(surface, triangles, &mut clock);
+    }
+    Ok(surface)
 }
 
 /// Corners of the bounding box of points in the cloud's unit frame, in world coordinates.
@@ -382,6 +391,7 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
         boundary: params.boundary,
         max_hole: params.max_hole,
         sharp: params.sharp,
-        most: (params.resolution == Resolution::Auto).then(|| TRIANGLES * sites.tree.points.len()),
+        most: (params.resolution == Resolution::Auto)
+            .then(|| (TRIANGLES * sites.tree.points.len()).max(params.triangles.unwrap_or(0))),
     }
 }

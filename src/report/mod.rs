@@ -96,6 +96,30 @@ pub struct ReduceReport {
     pub doubts: Vec<Doubt>,
 }
 
+/// What a simplification did.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct LightReport {
+    /// Triangles that there were.
+    pub from: usize,
+    /// Triangles that are left.
+    pub triangles: usize,
+    /// Distance between both meshes, a fraction of the diagonal: from the vertices and triangles' middles of each to the other.
+    pub error: DistanceStats,
+    /// Connected components.
+    pub components: usize,
+    /// Edges with one triangle.
+    pub boundary_edges: usize,
+    /// Edges with more than two triangles.
+    pub non_manifold_edges: usize,
+    /// Genus of each component, the largest component first.
+    pub genus: Vec<i64>,
+    /// Triangles that cross others.
+    pub self_intersections: usize,
+    /// Why there are more triangles than were asked for; empty where there are not.
+    pub reason: String,
+}
+
 /// What a reconstruction did: all of [`ReduceReport`] (`distance` is then from the input points to the mesh), and:
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -131,4 +155,8 @@ pub struct SurfaceReport {
     pub orientation_energy_before: f64,
     /// What decided which side is out.
     pub orientation: OrientationReport,
+    /// With `triangles`, what that cost. Counts above are of the mesh with the fewer triangles, distances from the points those of the
+    /// surface before: with [`LightReport::error`] added, they bound those of the mesh.
+    #[cfg(feature = "light")]
+    pub simplified: Option<LightReport>,
 }

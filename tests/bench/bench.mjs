@@ -1,4 +1,4 @@
-// `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads]`: what Pointweave costs, in this process.
+// `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads] [simplify] [texture]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
 //   growth   the reduction of ten thousand to ten million points, a mesh of a hundred thousand to five million: time and
@@ -7,6 +7,8 @@
 //   peer     the reduction beside meshoptimizer's simplifyPoints on the same cloud
 //   surface  from points to a mesh beside Open3D: normals, their orientation, Poisson
 //   threads  one thread beside two, the same bytes
+//   simplify fewer triangles beside meshoptimizer's, Open3D's and PyMeshLab's: distances from one full mesh
+//   texture  5,000 triangles with pictures beside more of them with colours of vertices: how near the scan's colours and normals
 //
 // Times are medians of several runs; machines differ, so compare ratios.
 
@@ -16,6 +18,7 @@ import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createEngine } from 'pointweave';
+import { simplifyRows, textureRows } from './light.mjs';
 
 const HERE = dirname(fileURLToPath(import.meta.url));
 const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(HERE, '../../../shared');
@@ -40,7 +43,7 @@ const NEVER = Number.MIN_VALUE;
 /** Cells on which scikit-fuzzy is timed. */
 const TIMED_CELLS = 40;
 
-const benches = { tables, growth, fcm, peer, surface, threads };
+const benches = { tables, growth, fcm, peer, surface, threads, simplify, texture };
 const asked = process.argv.slice(2);
 const unknown = asked.find((name) => !(name in benches));
 if (unknown !== undefined) {
@@ -239,6 +242,14 @@ async function threads() {
     await engine.dispose();
   }
   print('Two threads (ms)', [['call', '1 thread', '2 threads', 'times as fast', 'same bytes'], ...rows]);
+}
+
+async function simplify() {
+  print('Fewer triangles: distances between the meshes, both ways, as fractions of the diagonal (single build, one thread)', await simplifyRows());
+}
+
+async function texture() {
+  print('Colours and normals at the scan\'s points (pictures of 1024 texels; ms are those after the reconstruction)', await textureRows());
 }
 
 /** The last result and the median time of some runs after a first one. */

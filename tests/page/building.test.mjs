@@ -11,7 +11,7 @@ import { promisify } from 'node:util';
 import { PATIENCE, start } from './browser.mjs';
 
 const WWW = fileURLToPath(new URL('../../www/', import.meta.url));
-const MISSING = ['threads', 'las', 'e57', 'pictures', 'exports', 'packed', 'prepare'];
+const MISSING = ['threads', 'las', 'e57', 'pictures', 'exports', 'packed', 'prepare', 'light'];
 
 test('the first picture needs the single-threaded build alone, and the page says what is missing', async (t) => {
   const dist = await mkdtemp(join(tmpdir(), 'pointweave-building-'));

@@ -198,7 +198,7 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['recuce', 'scan.ply'], /no command 'recuce': did you mean reduce\?/],
     [['reduce'], /reduce needs a file/],
     [['scan.ply', '-o', 'mesh.glb'], /'scan\.ply' looks like a file, .*: did you mean pointweave reconstruct scan\.ply -o mesh\.glb\?$/],
-    [['--ratio', '0.2', 'scan.ply'], /a command comes before --ratio: reduce, reconstruct, inspect, prepare or merge$/],
+    [['--ratio', '0.2', 'scan.ply'], /a command comes before --ratio: reduce, reconstruct, inspect, prepare, merge or simplify$/],
     [['reduce', 'scan.ply'], /where should the result go\?/],
     [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj, pcd, las, laz, usdz$/],
     [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl, pcd, las, laz, 3mf, usdz$/],
@@ -231,7 +231,7 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', 'a/scan.xyz', '--out-dir', 'b'], /'scan\.ply' and 'a\/scan\.xyz' would both become 'b\/scan\.ply'/],
     [['reduce', '-', '--out-dir', 'b'], /standard input has no name/],
     [['inspect', '-', '-'], /standard input can be read once/],
-    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce, reconstruct, prepare and merge$/],
+    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce, reconstruct, prepare, merge and simplify$/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--no-reduce', '--ratio', '0.5'], /--no-reduce leaves nothing/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--sharp', '--no-sharp'], /exclude each other/],
   ];
@@ -332,7 +332,11 @@ test('every option of the package is a flag, with a word in the help', async (t)
     for (const help of [light, surface]) assert.match(help, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
   }
   for (const key of Object.keys(fitting)) assert.match(surface, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
-  assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...worded, ...writing, up, unit }).sort());
+  const simpler = String((await good(path, ['simplify', '--help'])).stdout);
+  for (const key of Object.keys(TABLES.simplify)) assert.match(simpler, new RegExp(`\\n  --${key}\\b`), key);
+  for (const flag of ['texture', 'maps']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
+  const made = { ...TABLES.simplify, texture: {}, maps: {} };
+  assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...made, ...worded, ...writing, up, unit }).sort());
 
   const line = 'reconstruct a.ply -o b.glb --flatness 0.001 --method paper --max-iterations 7 --norm diagonal --curvature-weight 0 ' +
     '--attributes label=majority --attributes a=b=nearest --outliers drop --accuracy 1e-3 --smoothing auto --resolution 0.02 --no-orient --sharp ' +

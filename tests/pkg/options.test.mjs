@@ -158,6 +158,7 @@ test('Rust has the same ranges', async () => {
     ],
     reconstruct: [
       ['accuracy', [[0, false], [0.999, true], [1, false]]],
+      ['triangles', [[1, true], [0, false], [1.5, false], [1e6, true]]],
       ['smoothing', [['auto', true], [0, true], [1e6, true], [1.1e6, false], [-1, false], ['other', false]]],
       ['resolution', [['auto', true], [1e-4, true], [0.25, true], [0.26, false], [9e-5, false]]],
       ['reduce', [[false, true], [true, false], [{}, true], [{ maxDepth: 22 }, false]]],

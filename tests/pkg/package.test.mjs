@@ -44,7 +44,7 @@ async function reached(names, found = new Set()) {
 }
 
 test('the tarball holds what the entries reach, documentation and licences, and nothing else', async () => {
-  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'samples'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
+  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'light', 'samples'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
   const entries = [manifest.exports, manifest.bin].flatMap(targets).filter((name) => !name.includes('*'));
   const needed = await reached([...entries, ...wasm]);
   const documents = tarball.contents.filter((name) => /^docs\/[a-z-]+\.md$/.test(name));
@@ -131,7 +131,7 @@ test('the element in one file is not larger than its budget, and names nothing t
 });
 
 /** Most bytes of each part, gzipped. */
-const BUDGET = { single: 384_000, threads: 428_000, files: 185_000, las: 120_000, e57: 146_000, packed: 248_500, pictures: 174_000, exports: 217_000, prepare: 177_500, samples: 40_000, script: 19_600 };
+const BUDGET = { single: 384_000, threads: 428_000, files: 186_500, las: 120_000, e57: 146_000, packed: 250_000, pictures: 174_000, exports: 219_000, prepare: 177_500, light: 262_000, samples: 40_000, script: 20_600 };
 
 test('nothing is larger than its budget', async () => {
   const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;

@@ -1,7 +1,7 @@
 import { element } from './dom.js';
 
 /** What each wasm module adds to the page. @type {Record<string, string>} */
-const ADDS = { threads: 'threads, which make it faster', las: 'LAS and LAZ files', e57: 'E57 files', pictures: 'pictures of textures', exports: 'files to save', packed: 'packed files', prepare: 'recipes' };
+const ADDS = { threads: 'threads, which make it faster', las: 'LAS and LAZ files', e57: 'E57 files', pictures: 'pictures of textures', exports: 'files to save', packed: 'packed files', prepare: 'recipes', light: 'light meshes' };
 
 const EVERY_MS = 2000;
 

@@ -64,6 +64,8 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
     };
     peer("fcm", "SKFUZZY_PYTHON", packages::skfuzzy);
     peer("surface", "OPEN3D_PYTHON", packages::open3d);
+    peer("simplify", "SIMPLIFY_PYTHON", packages::simplify);
+    peer("texture", "SIMPLIFY_PYTHON", packages::simplify);
     run(&mut bench, "a benchmark failed; its error is above")
 }
 

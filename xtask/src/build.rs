@@ -33,6 +33,8 @@ pub enum Build {
     Exports,
     /// Recipes alone: what is cut before a reduction.
     Prepare,
+    /// Meshes with fewer triangles alone.
+    Light,
     /// Sample scans alone.
     Samples,
     /// The readers of what is packed as a whole.
@@ -40,7 +42,7 @@ pub enum Build {
 }
 
 impl Build {
-    pub const ALL: [Build; 10] = [
+    pub const ALL: [Build; 11] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -51,6 +53,7 @@ impl Build {
         Build::Samples,
         Build::Packed,
         Build::Prepare,
+        Build::Light,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -65,6 +68,7 @@ impl Build {
             Self::Pictures => "pictures",
             Self::Exports => "exports",
             Self::Prepare => "prepare",
+            Self::Light => "light",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -81,6 +85,7 @@ impl Build {
             Self::Pictures => "pictures",
             Self::Exports => "exports",
             Self::Prepare => "prepare",
+            Self::Light => "light",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -98,6 +103,7 @@ impl Build {
             | Self::Exports
             | Self::Samples
             | Self::Prepare
+            | Self::Light
             | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[

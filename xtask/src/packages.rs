@@ -59,6 +59,11 @@ pub fn open3d() -> Result<PathBuf> {
     python("open3d", "Open3D")
 }
 
+/// A Python with what simplifies meshes.
+pub fn simplify() -> Result<PathBuf> {
+    python("simplify", "Open3D and PyMeshLab")
+}
+
 /// A Python with libraries of other people's for the formats of scans.
 pub fn formats() -> Result<PathBuf> {
     python("formats", "readers and writers of scans")

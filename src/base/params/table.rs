@@ -231,6 +231,10 @@ table! {
         choice propagation: Propagation = Propagation::Global, flag("how orientation spreads");
         number resolution: Resolution = Resolution::Auto, range(auto or from 0.0001 to 0.25),
             flag("edge length of the mesh, a share of the diagonal");
+        /// The mesh has at most so many triangles, at least 98 % of them, and of the same topology: edges are collapsed by what that
+        /// costs. The report's `simplified` says how far the mesh is then from what it was.
+        integer triangles: Option<usize> = None, range(from 1), default("as many as the points need"),
+            flag("most triangles of the mesh");
         /// Keep creases in the mesh.
         switch sharp: bool = true, flag("keep creases"),
             field("Keep creases sharp", "Edges and corners stay; without it they are rounded.");

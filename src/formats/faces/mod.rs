@@ -40,6 +40,43 @@ pub enum FaceMode {
     Sample,
     /// The vertices are the points; faces are counted.
     Vertices,
+    /// The vertices are the points, with the colours of their faces; [`crate::formats::Reading::take_indices`] gives the triangles.
+    Mesh,
+}
+
+/// The vertices as points with the colours of their faces, and the triangles over them.
+pub(super) fn mesh(
+    mut faces: Faces,
+    mut vertices: RawCloud,
+    gone: &[u32],
+) -> (RawCloud, Vec<u32>, Sampling) {
+    faces.settle(gone, vertices.points());
+    let sampling = Sampling {
+        broken: faces.broken,
+        missing: std::mem::take(&mut faces.missing),
+        ..Sampling::default()
+    };
+    let colors = Painter::of(&faces, &vertices).map(|painter| {
+        let mut sums = vec![([0.0; 3], 0.0); vertices.points()];
+        for (triangle, corners) in faces.corners.iter().enumerate() {
+            for (corner, &v) in corners.iter().enumerate() {
+                let weights = [0, 1, 2].map(|k| f64::from(u8::from(k == corner)));
+                if let Some(color) = painter.color(triangle, weights) {
+                    let (sum, count) = &mut sums[v as usize];
+                    *sum = [0, 1, 2].map(|k| sum[k] + color[k]);
+                    *count += 1.0;
+                }
+            }
+        }
+        let mean = |(i, (sum, count)): (usize, &([f64; 3], f64))| match *count {
+            0.0 => vertex_color(&vertices, i as u32),
+            count => sum.map(|x| x / count),
+        };
+        let means = sums.iter().enumerate().map(mean);
+        means.flatten().map(|x| x.round() as u8).collect()
+    });
+    vertices.colors = colors;
+    (vertices, faces.corners.into_flattened(), sampling)
 }
 
 /// A table of points of the faces over the vertices of another; `None` where the faces have no area: the vertices are then all

@@ -13,7 +13,7 @@ use super::local::Local;
 use super::values::linear;
 use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
-use crate::formats::raw_cloud::RawCloud;
+use crate::formats::raw_cloud::{RawCloud, Skin};
 use glam::Vec3;
 
 /// Component types of accessors.
@@ -62,7 +62,18 @@ pub(super) fn write(
             },
         );
     }
-    if let Some(colors) = &cloud.colors {
+    let skin = cloud.skin().filter(|_| triangles.is_some());
+    if let Some(skin) = skin {
+        check_finite("uvs", &skin.uvs, 2)?;
+        attribute("TEXCOORD_0", file.floats(&skin.uvs, VEC2, ""));
+        if let Some(tangents) = &skin.tangents {
+            check_finite("tangents", tangents, 4)?;
+            attribute("TANGENT", file.floats(tangents, VEC4, ""));
+        }
+    }
+    // Where there is a picture of them, they would be multiplied with it.
+    let pictured = skin.is_some_and(|skin| skin.color.is_some());
+    if let Some(colors) = cloud.colors.as_ref().filter(|_| !pictured) {
         attribute("COLOR_0", file.colors(colors));
     }
     for (name, scalar) in names(&cloud.attributes).iter().zip(&cloud.attributes) {
@@ -77,7 +88,12 @@ pub(super) fn write(
         "\"meshes\":[{{\"primitives\":[{{\"attributes\":{{{}}},{primitive},\"material\":0}}]}}]",
         attributes.join(",")
     );
-    Ok(file.finish(&mesh, &nodes(local.origin, grid.as_ref()), quantize))
+    let mut material = Material::default();
+    if let Some(skin) = skin {
+        material.wear(skin, &mut file);
+    }
+    let nodes = nodes(local.origin, grid.as_ref());
+    Ok(file.finish(&mesh, &nodes, &material, quantize))
 }
 
 /// The node of the mesh, and above it that of the origin where quantised positions have a place of their own.
@@ -122,9 +138,56 @@ impl Grid {
     }
 }
 
+/// What the JSON says of pictures.
+#[derive(Default)]
+struct Material {
+    color: String,
+    normal: String,
+    images: Vec<String>,
+}
+
+impl Material {
+    /// Takes the pictures into the file.
+    fn wear(&mut self, skin: &Skin, file: &mut File) {
+        if let Some(png) = &skin.color {
+            let index = self.picture(png, file);
+            self.color = format!("\"baseColorTexture\":{{\"index\":{index}}},");
+        }
+        if let Some(png) = &skin.normal {
+            let index = self.picture(png, file);
+            self.normal = format!("\"normalTexture\":{{\"index\":{index}}},");
+        }
+    }
+
+    fn picture(&mut self, png: &[u8], file: &mut File) -> usize {
+        let view = file.picture(png);
+        self.images.push(format!(
+            "{{\"bufferView\":{view},\"mimeType\":\"image/png\"}}"
+        ));
+        self.images.len() - 1
+    }
+
+    /// The lists of images and textures; nothing without any.
+    fn pictures(&self) -> String {
+        if self.images.is_empty() {
+            return String::new();
+        }
+        let textures = 0..self.images.len();
+        let textures: Vec<String> = textures
+            .map(|i| format!("{{\"source\":{i},\"sampler\":0}}"))
+            .collect();
+        format!(
+            "\"images\":[{}],\"textures\":[{}],\"samplers\":[{{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":33071,\"wrapT\":33071}}],",
+            self.images.join(","),
+            textures.join(",")
+        )
+    }
+}
+
 /// How many values one element has, and what that is called.
 type Kind = (usize, &'static str);
 const SCALAR: Kind = (1, "SCALAR");
+const VEC2: Kind = (2, "VEC2");
 const VEC3: Kind = (3, "VEC3");
 const VEC4: Kind = (4, "VEC4");
 
@@ -172,6 +235,18 @@ impl File {
         let count = (self.bytes.len() - start) / stride;
         let view = format!("\"byteStride\":{stride},\"target\":{ARRAY_BUFFER}");
         self.finish_view(start, &view, component, kind, count, also)
+    }
+
+    /// The bytes of a picture's file; gives the view's index.
+    fn picture(&mut self, png: &[u8]) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(png);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let length = png.len();
+        self.views.push(format!(
+            "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{length}}}"
+        ));
+        self.views.len() - 1
     }
 
     fn floats(&mut self, values: &[f32], (size, kind): Kind, also: &str) -> usize {
@@ -247,7 +322,7 @@ impl File {
     }
 
     /// Header, JSON, binary part.
-    fn finish(self, mesh: &str, nodes: &str, quantized: bool) -> Vec<u8> {
+    fn finish(self, mesh: &str, nodes: &str, material: &Material, quantized: bool) -> Vec<u8> {
         let extensions = if quantized {
             let list = "[\"KHR_mesh_quantization\"]";
             format!("\"extensionsUsed\":{list},\"extensionsRequired\":{list},")
@@ -257,9 +332,12 @@ impl File {
         let mut json = format!(
             "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"Pointweave {}\"}},{extensions}\"scene\":0,\
              \"scenes\":[{{\"nodes\":[0]}}],\"nodes\":[{nodes}],{mesh},\
-             \"materials\":[{{\"pbrMetallicRoughness\":{{\"metallicFactor\":0,\"roughnessFactor\":0.9}},\"doubleSided\":true}}],\
+             \"materials\":[{{\"pbrMetallicRoughness\":{{{}\"metallicFactor\":0,\"roughnessFactor\":0.9}},{}\"doubleSided\":true}}],{}\
              \"accessors\":[{}],\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
             env!("CARGO_PKG_VERSION"),
+            material.color,
+            material.normal,
+            material.pictures(),
             self.accessors.join(","),
             self.views.join(","),
             self.bytes.len()

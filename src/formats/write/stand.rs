@@ -60,6 +60,17 @@ pub(super) fn stand(
             normal.copy_from_slice(&turned.to_array().map(|x| x as f32));
         }
     }
+    #[cfg(feature = "exports")]
+    for tangent in moved
+        .skin
+        .iter_mut()
+        .flat_map(|skin| skin.tangents.iter_mut())
+    {
+        for tangent in tangent.chunks_exact_mut(4) {
+            let turned = turn * DVec3::new(tangent[0].into(), tangent[1].into(), tangent[2].into());
+            tangent[..3].copy_from_slice(&turned.to_array().map(|x| x as f32));
+        }
+    }
     moved.origin = cloud
         .origin
         .map(|origin| place(DVec3::from_array(origin)).to_array());

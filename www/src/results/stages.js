@@ -14,6 +14,8 @@ export const STAGES = /** @type {Record<string, string>} */ ({
   orient: 'Finding out what is inside',
   extract: 'Weaving the triangles',
   report: 'Measuring the result',
+  simplify: 'Making it light',
+  texture: 'Painting it',
 });
 
 export const stageWords = (/** @type {string} */ stage) => say(STAGES[stage] ?? stage);

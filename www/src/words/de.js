@@ -351,6 +351,8 @@ export default {
   'Finding out what is inside': 'Innen und außen werden bestimmt',
   'Weaving the triangles': 'Dreiecke werden gewebt',
   'Measuring the result': 'Ergebnis wird gemessen',
+  'Making it light': 'Netz wird leichter gemacht',
+  'Painting it': 'Netz wird bemalt',
   'red': 'rot',
   'green': 'grün',
   'blue': 'blau',

@@ -351,6 +351,8 @@ export default {
   'Finding out what is inside': 'Recherche de l’intérieur',
   'Weaving the triangles': 'Tissage des triangles',
   'Measuring the result': 'Mesure du résultat',
+  'Making it light': 'Allègement du maillage',
+  'Painting it': 'Peinture du maillage',
   'red': 'rouge',
   'green': 'vert',
   'blue': 'bleu',

@@ -1,0 +1,117 @@
+//! Colours of texels from the scan's points.
+
+use super::fill::Pixel;
+use super::texels::{Texels, in_parallel, mix, place};
+use crate::base::error::Result;
+use crate::base::par;
+use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
+use crate::light::carry::Spot;
+use crate::mesh::Mesh;
+use crate::report::distance::TriangleTree;
+use glam::{DVec3, Vec3};
+
+/// Points that a texel asks for its colour.
+const NEAREST: usize = 8;
+/// Weights are those of distances beyond this share of a texel or of the points' spacing, the longer of the two: nearer points count
+/// alike.
+const SOFT: f64 = 0.2;
+/// Texels farther from every point than so many spacings have no colour of their own.
+const FAR: f64 = 5.0;
+/// Points that one index of a parallel map takes.
+const PER_TASK: usize = 256;
+
+/// The scan's points where the full mesh has them.
+pub(super) struct Points<'a> {
+    tree: Octree,
+    /// By place in the tree.
+    colors: Vec<[u8; 3]>,
+    normals: Vec<Vec3>,
+    /// Mean distance of neighbours.
+    spacing: f64,
+    full: &'a Mesh,
+}
+
+impl<'a> Points<'a> {
+    /// `faces` is of the full mesh's triangles.
+    pub(super) fn new(
+        points: &[Vec3],
+        colors: &[[u8; 3]],
+        (full, faces): (&'a Mesh, &TriangleTree),
+    ) -> Points<'a> {
+        let tree = Octree::build(points);
+        let tasks: Vec<&[Vec3]> = tree.points.chunks(PER_TASK).collect();
+        let normals: Vec<Vec<Vec3>> = par::map(
+            tasks.len(),
+            || 0,
+            |k, hint| {
+                let of = |&point: &Vec3| {
+                    normal(full, &Spot::nearest(point, full, faces, hint)).as_vec3()
+                };
+                tasks[k].iter().map(of).collect()
+            },
+        );
+        let area: f64 = full
+            .triangles
+            .iter()
+            .map(|&t| full.cross(t).length() / 2.0)
+            .sum();
+        Points {
+            colors: tree.order.iter().map(|&i| colors[i as usize]).collect(),
+            normals: normals.concat(),
+            spacing: (area / points.len().max(1) as f64).sqrt(),
+            tree,
+            full,
+        }
+    }
+
+    /// The colour of each texel that has points near.
+    pub(super) fn bake(
+        &self,
+        texels: &Texels,
+        spots: &[Spot],
+        mesh: &Mesh,
+        progress: &mut dyn FnMut(f32) -> Result<()>,
+    ) -> Result<Vec<Option<Pixel>>> {
+        let soft = SOFT * texels.length(mesh).max(self.spacing);
+        let found = in_parallel(spots, progress, Vec::new, |spot, near| {
+            self.at(spot, soft, near)
+        })?;
+        let mut pixels = vec![None; texels.size[0] * texels.size[1]];
+        for (texel, color) in texels.all.iter().zip(found) {
+            pixels[texel.pixel as usize] = color;
+        }
+        Ok(pixels)
+    }
+
+    fn at(&self, spot: &Spot, soft: f64, near: &mut Vec<Neighbor>) -> Option<Pixel> {
+        let (at, out) = (place(self.full, spot), normal(self.full, spot));
+        self.tree.knn(at.as_vec3(), NEAREST, near);
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for neighbor in near.iter() {
+            let i = neighbor.index as usize;
+            let distance2 = f64::from(neighbor.distance2);
+            let agrees = out.dot(self.normals[i].as_dvec3());
+            if agrees <= 0.0 || distance2 > (FAR * self.spacing) * (FAR * self.spacing) {
+                continue;
+            }
+            let weight = agrees * agrees / (distance2 + soft * soft);
+            sum += DVec3::from(self.colors[i].map(f64::from)) * weight;
+            weights += weight;
+        }
+        (weights > 0.0).then(|| (sum / weights).to_array().map(|x| x as f32))
+    }
+}
+
+/// Unit normal of a spot, of its corners' where they have any.
+pub(super) fn normal(mesh: &Mesh, spot: &Spot) -> DVec3 {
+    let mean = match mesh.normals.is_empty() {
+        true => DVec3::ZERO,
+        false => mix(mesh, spot, |v| mesh.normals[v].as_dvec3()),
+    };
+    let face = || {
+        mesh.cross(mesh.triangles[spot.triangle as usize])
+            .normalize_or(DVec3::Z)
+    };
+    mean.try_normalize().unwrap_or_else(face)
+}

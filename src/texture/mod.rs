@@ -1,0 +1,195 @@
+//! What a light mesh lost, as pictures on it: colour maps and normal maps.
+//!
+//! 1. `unwrap`: the light mesh is cut into charts, which lie flat in one picture and nowhere on each other (crate `uvunwrap`);
+//!    vertices on cuts are there once for each chart.
+//! 2. `tangents`: the frame of each vertex that normal maps are told in, by MikkTSpace, as glTF asks.
+//! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh.
+//! 4. `color`: the colour of the scan's points around that place, those of the other side of a wall left out. `relief`: the full mesh's
+//!    normal there, in the frame of the light mesh.
+//! 5. `fill`: texels that no point is near take the colours around them, and so do those around charts, so that no seam shows.
+//! 6. `picture`: PNG files.
+//!
+//! **In**: a full and a light mesh of one unit frame ([`crate::light`]), and the scan's points with their colours. **Out**: the light mesh
+//! with texture coordinates, tangents and pictures ([`Textured`]).
+//!
+//! **Cost**: one nearest-triangle query a texel, and one of the nearest points for colours; 4 bytes a texel and map, and 40 bytes
+//! a texel of a chart.
+//!
+//! M. Mikkelsen, "Simulation of wrinkled surfaces revisited", 2008, for the frames; J. Cohen et al., "Appearance-preserving
+//! simplification", 1998, for normals and colours in maps of a simplified mesh.
+
+mod color;
+mod fill;
+mod picture;
+mod relief;
+mod tangents;
+mod texels;
+mod unwrap;
+
+use crate::base::error::{Error, Result};
+use crate::base::progress::{Progress, Stage};
+use crate::cloud::Attribute;
+use crate::light::Painted;
+use crate::mesh::Mesh;
+use crate::report::distance::TriangleTree;
+use glam::Vec3;
+
+/// Sides of pictures, in texels.
+const SIZES: [usize; 2] = [64, 8192];
+/// Texels for each point of the scan, where nobody says the size: two along each axis.
+const TEXELS_A_POINT: f64 = 4.0;
+/// About the share of a picture that charts cover.
+const COVERED: f64 = 0.6;
+
+/// Which pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Map {
+    /// Of the scan's points; none where they have no colour.
+    Color,
+    /// Of the full mesh, in the light mesh's tangent space: +x along the tangent, +y up in the picture, +z out.
+    Normal,
+}
+
+/// How a mesh is textured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextureParams {
+    /// Sides of the pictures in texels, 64 to 8192; they are as high as the charts need. Default: two texels a point of the scan along each
+    /// axis, a power of two from 256 to 4096.
+    pub size: Option<usize>,
+    /// Default: both.
+    pub maps: Vec<Map>,
+}
+
+impl Default for TextureParams {
+    fn default() -> Self {
+        TextureParams {
+            size: None,
+            maps: vec![Map::Color, Map::Normal],
+        }
+    }
+}
+
+/// A picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    /// What it shows.
+    pub map: Map,
+    /// In texels.
+    pub width: usize,
+    /// In texels.
+    pub height: usize,
+    /// A PNG file: 8 bits, three channels.
+    pub png: Vec<u8>,
+}
+
+/// A mesh with texture coordinates, and pictures for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Textured {
+    /// The light mesh, with vertices on the cuts once for each chart.
+    pub painted: Painted,
+    /// One a vertex, 0 to 1; the first row of a picture is at 0.
+    pub uvs: Vec<[f32; 2]>,
+    /// One a vertex, with the sign of the bitangent: `cross(normal, tangent) · w`.
+    pub tangents: Vec<[f32; 4]>,
+    /// The pictures, in the order in which they were asked for.
+    pub textures: Vec<Texture>,
+}
+
+/// The scan's points in the meshes' frame, and their colours.
+#[derive(Debug, Clone, Copy)]
+pub struct Scan<'a> {
+    /// Positions.
+    pub points: &'a [Vec3],
+    /// One a point, where there are any.
+    pub colors: Option<&'a [[u8; 3]]>,
+}
+
+/// Textures `light` with what `full` and the scan show.
+///
+/// # Errors
+/// [`Error::BadOption`] (size; more charts than the size has room for), [`Error::Cancelled`].
+pub fn bake(
+    full: &Mesh,
+    light: &Painted,
+    scan: Scan,
+    params: &TextureParams,
+    progress: &mut dyn Progress,
+) -> Result<Textured> {
+    let size = size(params, scan.points.len())?;
+    let mut tell =
+        |from: f32, to: f32, part: f32| progress.update(Stage::Texture, from + (to - from) * part);
+    let unwrapped = unwrap::unwrap(&light.mesh, size, &mut |part| tell(0.0, 0.2, part))?;
+    let painted = split(light, &unwrapped.of, unwrapped.triangles);
+    let uvs = unwrapped.uvs;
+    let tangents = tangents::tangents(&painted.mesh, &uvs)?;
+    let [width, height] = unwrapped.size;
+    let texels = texels::Texels::new(&painted.mesh, &uvs, [width, height]);
+    let faces = TriangleTree::new(&full.vertices, &full.triangles);
+    let spots = texels.spots(&painted.mesh, (full, &faces), &mut |part| {
+        tell(0.2, 0.6, part)
+    })?;
+    let mut textures = Vec::new();
+    for &map in &params.maps {
+        let mut done = |part: f32| tell(0.6, 0.95, part);
+        let pixels = match (map, scan.colors) {
+            (Map::Color, Some(colors)) => {
+                let colored = color::Points::new(scan.points, colors, (full, &faces));
+                colored.bake(&texels, &spots, full, &mut done)?
+            }
+            (Map::Color, None) => continue,
+            (Map::Normal, _) => {
+                relief::bake(&texels, &spots, full, (&painted.mesh, &tangents), &mut done)?
+            }
+        };
+        let filled = fill::fill(pixels, [width, height]);
+        textures.push(Texture {
+            map,
+            width,
+            height,
+            png: picture::png(&filled, [width, height])?,
+        });
+    }
+    tell(0.95, 1.0, 1.0)?;
+    Ok(Textured {
+        painted,
+        uvs,
+        tangents,
+        textures,
+    })
+}
+
+/// The size that is asked for, or that suits so many points.
+fn size(params: &TextureParams, points: usize) -> Result<usize> {
+    match params.size {
+        Some(size) if !(SIZES[0]..=SIZES[1]).contains(&size) => Err(Error::bad_option(
+            "texture.size",
+            "an integer from 64 to 8192",
+            &size.to_string(),
+        )),
+        Some(size) => Ok(size),
+        None => {
+            let side = (points as f64 * TEXELS_A_POINT / COVERED).sqrt();
+            Ok((side as usize).next_power_of_two().clamp(256, 4096))
+        }
+    }
+}
+
+/// The mesh with its vertices in another order, some of them more than once.
+fn split(light: &Painted, of: &[u32], triangles: Vec<[u32; 3]>) -> Painted {
+    fn picked<T: Copy>(values: &[T], of: &[u32]) -> Vec<T> {
+        of.iter().map(|&v| values[v as usize]).collect()
+    }
+    let attribute = |a: &Attribute| Attribute {
+        name: a.name.clone(),
+        values: picked(&a.values, of),
+    };
+    Painted {
+        mesh: Mesh {
+            vertices: picked(&light.mesh.vertices, of),
+            normals: picked(&light.mesh.normals, of),
+            triangles,
+        },
+        colors: light.colors.as_ref().map(|colors| picked(colors, of)),
+        attributes: light.attributes.iter().map(attribute).collect(),
+    }
+}

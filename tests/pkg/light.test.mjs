@@ -1,0 +1,130 @@
+// Meshes with fewer triangles, and with pictures of what they lost.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { promisify } from 'node:util';
+import { WebIO } from '@gltf-transform/core';
+import { validateBytes } from 'gltf-validator';
+import { createEngine, flip, read, reconstruct, simplify, write } from 'pointweave';
+import { load } from 'pointweave/core';
+import { sphere } from './support.mjs';
+
+const run = promisify(execFile);
+const CLI = fileURLToPath(new URL('../../pkg/cli.js', import.meta.url));
+
+const scan = { ...sphere(3000), up: [0, 0, 1] };
+const full = await reconstruct(scan, { reduce: false });
+const light = await reconstruct(scan, { reduce: false, triangles: 500, distances: true });
+
+/** Vertices of a sphere of radius 1 around the middle that are more than `most` away from it. */
+const off = ({ positions }, most) => {
+  const radii = Array.from({ length: positions.length / 3 }, (_, i) => Math.hypot(...positions.subarray(3 * i, 3 * i + 3)));
+  const mean = radii.reduce((sum, r) => sum + r, 0) / radii.length;
+  return radii.filter((r) => Math.abs(r / mean - 1) > most).length;
+};
+
+test('a reconstruction with a budget has at most so many triangles, and a report of what that cost', () => {
+  const { indices, positions, normals, colors, attributes, distances, report, cloud } = light;
+  const triangles = indices.length / 3;
+  assert.ok(triangles <= 500 && triangles >= 490, `${triangles}`);
+  const vertices = positions.length / 3;
+  assert.deepEqual([normals.length, colors.length, distances.vertices.length, distances.points.length], [3 * vertices, 3 * vertices, vertices, 3000]);
+  for (const values of Object.values(attributes ?? {})) assert.equal(values.length, vertices);
+  assert.ok(!('' in (attributes ?? {})));
+  const { simplified, ...told } = report;
+  assert.deepEqual([told.triangles, told.components, told.boundaryEdges, told.genus, simplified.reason], [triangles, 1, 0, [0], '']);
+  assert.ok(simplified.from === full.indices.length / 3 && simplified.error.max < 0.02 && simplified.error.rms <= simplified.error.max);
+  assert.equal(cloud.positions.length, 9000);
+  assert.equal(off(light, 0.03), 0);
+});
+
+test('simplify takes a mesh of a reconstruction, of a file, and bare triangles; the functions without an engine do the same', async () => {
+  const again = await simplify(full, { triangles: 500 });
+  assert.deepEqual(again.positions, light.positions);
+  assert.deepEqual(again.indices, light.indices);
+  assert.equal(again.report.inputPoints, 3000);
+  assert.deepEqual(again.up, full.up);
+  const core = await load();
+  assert.deepEqual((await core.simplify(full, { triangles: 500 })).indices, light.indices);
+  assert.throws(() => core.reconstruct(scan, { triangles: 500 }), { code: 'bad-option' });
+  const near = await simplify({ positions: full.positions, indices: full.indices }, { error: 0.005 });
+  assert.ok(near.report.simplified.error.max <= 0.005 && near.indices.length < full.indices.length / 2 && !near.normals);
+  for (const format of ['ply', 'obj', 'stl', 'glb', '3mf']) {
+    const file = await read(await write(full, { format }), { name: `mesh.${format}`, faces: 'mesh' });
+    assert.equal(file.indices.length, full.indices.length, format);
+    const fewer = await simplify(file, { triangles: 500 });
+    assert.ok(fewer.indices.length <= 1500 && fewer.report.boundaryEdges === 0 && off(fewer, 0.03) === 0, format);
+    assert.equal(Boolean(fewer.colors), Boolean(file.colors), format);
+  }
+});
+
+test('what is wrong is said', async () => {
+  for (const [mesh, options, code] of [
+    [full, {}, 'bad-option'], [full, { triangles: 0 }, 'bad-option'], [full, { error: 0 }, 'bad-option'], [scan, { triangles: 100 }, 'bad-input'],
+    [{ ...full, indices: Uint32Array.of(0, 1) }, { triangles: 100 }, 'bad-length'], [{ ...full, indices: Uint32Array.of(0, 1, 9e6) }, { triangles: 100 }, 'bad-index'],
+  ]) await assert.rejects(simplify(mesh, options), { code });
+  for (const texture of [{ size: 63 }, { maps: ['metal'] }, 5]) await assert.rejects(reconstruct(scan, { texture }), { code: 'bad-option' });
+});
+
+test('a textured mesh is a GLB file that the validator has nothing to say about', async () => {
+  const seen = new Set();
+  const mesh = await reconstruct(scan, { reduce: false, triangles: 300, texture: { size: 256 }, onProgress: ({ stage }) => seen.add(stage) });
+  const vertices = mesh.positions.length / 3;
+  assert.ok(mesh.indices.length <= 900 && seen.has('texture') && seen.has('simplify'));
+  assert.deepEqual([mesh.uvs.length, mesh.tangents.length], [2 * vertices, 4 * vertices]);
+  assert.ok(mesh.uvs.every((x) => x >= 0 && x <= 1));
+  for (const options of [{}, { quantize: true }]) {
+    const glb = await write(mesh, { format: 'glb', ...options });
+    const { issues } = await validateBytes(glb);
+    assert.deepEqual(issues.messages.filter(({ severity }) => severity < 2), []);
+    if (options.quantize) continue;
+    const document = await new WebIO().readBinary(glb);
+    const [material] = document.getRoot().listMaterials();
+    const [primitive] = document.getRoot().listMeshes()[0].listPrimitives();
+    assert.deepEqual(primitive.listSemantics().sort(), ['NORMAL', 'POSITION', 'TANGENT', 'TEXCOORD_0', '_HEIGHT']);
+    for (const [texture, own] of [[material.getBaseColorTexture(), mesh.textures.color], [material.getNormalTexture(), mesh.textures.normal]]) {
+      assert.deepEqual(texture.getSize(), [own.width, own.height]);
+      assert.deepEqual(texture.getImage(), own.data);
+    }
+  }
+  const other = flip(mesh);
+  assert.deepEqual(other.tangents.slice(0, 4), mesh.tangents.slice(0, 4).map((x) => -x));
+  assert.ok(!('uvs' in (await simplify(mesh, { triangles: 100 }))));
+});
+
+test('an engine with a worker makes the same bytes, and an abort ends it', async () => {
+  const engine = await createEngine({ worker: true, threads: 1 });
+  try {
+    const options = { reduce: false, triangles: 300, texture: { size: 128, maps: ['color'] } };
+    const [ours, theirs] = [await reconstruct(scan, options), await engine.reconstruct(scan, options)];
+    assert.deepEqual(ours.textures, theirs.textures);
+    assert.deepEqual(Object.keys(ours.textures), ['color']);
+    const stop = new AbortController();
+    await assert.rejects(engine.simplify(full, { triangles: 100, signal: stop.signal, onProgress: () => stop.abort(new Error('enough')) }), /enough/);
+  } finally {
+    await engine.dispose();
+  }
+});
+
+test('the command line makes meshes light, and textures them', async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), 'pointweave-'));
+  t.after(() => rm(folder, { recursive: true }));
+  const pointweave = (...args) => run('node', [CLI, ...args], { cwd: folder });
+  await writeFile(join(folder, 'mesh.ply'), await write(full));
+  await writeFile(join(folder, 'scan.ply'), await write(scan));
+  const { stderr } = await pointweave('simplify', 'mesh.ply', '-o', 'light.glb', '--triangles', '500');
+  assert.match(stderr, /[\d,]+ → (500|49\d) triangles, [\d.]+ % of the diagonal off \(rms\), [\d.]+ % at most/);
+  await pointweave('reconstruct', 'scan.ply', '-o', 'textured.glb', '--triangles', '300', '--texture', '128', '--maps', 'color');
+  const document = await new WebIO().readBinary(await readFile(join(folder, 'textured.glb')));
+  assert.equal(document.getRoot().listTextures().length, 1);
+  for (const [args, words] of [
+    [['simplify', 'mesh.ply', '-o', 'x.glb'], /how light/], [['simplify', 'scan.ply', '-o', 'x.glb', '--triangles', '500'], /no triangles/],
+    [['reconstruct', 'scan.ply', '-o', 'x.ply', '--texture', '128'], /GLB/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--maps', 'color'], /--texture/],
+    [['simplify', 'mesh.ply', '-o', 'x.glb', '--triangles', '0'], /at least 1/],
+  ]) await assert.rejects(pointweave(...args), ({ stderr }) => words.test(stderr), args.join(' '));
+});
