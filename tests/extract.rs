@@ -432,7 +432,9 @@ fn triangles_as_many_as_asked_for() {
 /// White noise at the lattice's own scale: every ambiguous configuration, many at once.
 #[test]
 fn noise_is_manifold() {
-    for seed in 0..3u64 {
+    // Browsers do the same arithmetic: one seed of it there.
+    let seeds = if cfg!(target_arch = "wasm32") { 1 } else { 3 };
+    for seed in 0..seeds {
         let h = 1.0 / 60.0;
         let noise = |x: DVec3| {
             let p = (x / h).round().as_ivec3() + 1000;
