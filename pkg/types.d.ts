@@ -130,6 +130,9 @@ export interface SimplifyOptions {
 /** A mesh with fewer triangles: what it had, and in its report what that cost. */
 export type Simplified<T> = T & { report: LightCounts & { simplified: LightReport } };
 
+/** A mesh with pictures: what it had, and where its vertices are in them. The report is there where `triangles` were asked for. */
+export type Textured<T> = T & Required<Pick<SurfaceMesh, 'uvs' | 'tangents' | 'textures'>> & { report?: Partial<Simplified<T>['report']> };
+
 /** What a report says of the triangles that are left. */
 export type LightCounts = Pick<LightReport, 'triangles' | 'components' | 'boundaryEdges' | 'nonManifoldEdges' | 'genus' | 'selfIntersections'>;
 
@@ -179,15 +182,17 @@ export interface Texture {
 
 /** Of a reconstruction: pictures of what the points show, so that a mesh of few triangles looks like one of many. */
 export interface TextureOption {
-  texture?: {
-    /** Width in texels, 64 to 8192; the height is what the charts need. Default: two texels a point along each axis, 256 to 4096. */
-    size?: number;
-    /**
-     * `'color'`: the colours of the points, where they have any. `'normal'`: the surface as it was before `triangles`, in tangent space.
-     * Default: both.
-     */
-    maps?: ('color' | 'normal')[];
-  };
+  texture?: TextureOptions;
+}
+
+export interface TextureOptions {
+  /** Width in texels, 64 to 8192; the height is what the charts need. Default: two texels a point along each axis, 256 to 4096. */
+  size?: number;
+  /**
+   * `'color'`: the colours of the points, where they have any. `'normal'`: the surface as it was before `triangles`, in tangent space.
+   * Default: both.
+   */
+  maps?: ('color' | 'normal')[];
 }
 
 /** What can be said of a cloud before anything is done to it. Lengths are in the caller's unit. */
@@ -404,6 +409,11 @@ export interface Engine {
    * one; they keep normals, colours and attributes. In a mesh of `reconstruct`, the cloud and the report stay, but for its counts.
    */
   simplify<T extends TriangleMesh>(mesh: T, options: SimplifyOptions & CallOptions): Promise<Simplified<T>>;
+  /**
+   * Textures a mesh that is there, of at most so many `triangles` where they are given, with the colours of a scan of the same thing, and
+   * with what is lost of the mesh. Both are in the same coordinates, each with its `origin`.
+   */
+  texture<T extends TriangleMesh>(mesh: T, cloud: PointCloud, options?: TextureOptions & { triangles?: number } & CallOptions): Promise<Textured<T>>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & PrepareOption & CallOptions): Promise<ReducedCloud<P>>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & TextureOption & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
@@ -422,6 +432,7 @@ export interface Engine {
 
 export const prepare: Engine['prepare'];
 export const simplify: Engine['simplify'];
+export const texture: Engine['texture'];
 export const reduce: Engine['reduce'];
 export const reconstruct: Engine['reconstruct'];
 export const inspect: Engine['inspect'];

@@ -30,6 +30,12 @@ export interface Drawable extends Placed {
   colors?: Uint8Array;
   /** Three a triangle. */
   indices?: Uint32Array;
+  /** Two a vertex: where it is in the `textures`. */
+  uvs?: Float32Array;
+  /** Four a vertex: the frames that the picture of normals is told in. */
+  tangents?: Float32Array;
+  /** Pictures of a mesh, as `reconstruct` and `texture` make them; they come as soon as the browser has decoded them, in place of `colors`. */
+  textures?: Partial<Record<'color' | 'normal', { data: Uint8Array; type: string }>>;
   /** Which way is up, where that is known. */
   up?: [number, number, number];
   /** It was scanned from the air: z is up. */

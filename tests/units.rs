@@ -3,7 +3,7 @@
 
 use pointweave::cloud::{Attribute, Crs, Unit, Viewpoints};
 use pointweave::formats::{
-    Format, Output, Positions, RawCloud, Reading, WriteOptions, read, write,
+    Format, Output, Positions, RawCloud, Reading, Skin, WriteOptions, read, write,
 };
 use pointweave::progress::Silent;
 use pointweave::{ReduceParams, SurfaceParams};
@@ -587,6 +587,40 @@ fn usdz_is_a_stored_layer_with_y_up_in_metres() {
         .map_err(|error| error.code()),
         Err("empty-cloud")
     );
+}
+
+#[test]
+fn the_pictures_of_a_mesh_lie_in_usdz_beside_its_layer() {
+    let mut cloud = RawCloud::new(Positions::F32(vec![0., 0., 0., 1., 0., 0., 0., 1., 0.]));
+    cloud.colors = Some(vec![9; 9]);
+    let pictures = [vec![1u8; 100], vec![2u8; 70]];
+    cloud.skin = Some(Box::new(Skin {
+        uvs: vec![0.0, 0.0, 1.0, 0.25, 0.5, 1.0],
+        tangents: None,
+        color: Some(pictures[0].clone()),
+        normal: Some(pictures[1].clone()),
+    }));
+    let options = WriteOptions::default();
+    let bytes = write(&cloud, Some(&[0, 1, 2]), Output::Usdz, options).unwrap();
+    let find = |part: &[u8]| bytes.windows(part.len()).position(|at| at == part);
+    for picture in &pictures {
+        assert_eq!(
+            find(picture).map(|at| at % 64),
+            Some(0),
+            "as it is, aligned"
+        );
+    }
+    let layer = String::from_utf8_lossy(&bytes);
+    for line in [
+        "texCoord2f[] primvars:st = [(0, 1), (1, 0.75), (0.5, 0)] (interpolation = \"vertex\")\n",
+        "asset inputs:file = @color.png@\n",
+        "asset inputs:file = @normal.png@\n",
+        "color3f inputs:diffuseColor.connect = </Scan/Material/ColorPicture.outputs:rgb>\n",
+        "normal3f inputs:normal.connect = </Scan/Material/NormalPicture.outputs:rgb>\n",
+    ] {
+        assert!(layer.contains(line), "{line}");
+    }
+    assert!(!layer.contains("displayColor"), "the picture has them");
 }
 
 #[test]

@@ -34,8 +34,8 @@ import { UsageError } from './usage.js';
  * @property {string} [format] of the results
  */
 
-/** The format that a flag is for, and no other. */
-const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb', texture: 'glb' };
+/** The formats that a flag is for, and no others. */
+const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'usdz'] };
 
 /** @type {Command[]} */
 export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify'];
@@ -148,7 +148,7 @@ function formatFor(command, { out, format }) {
 /** @param {Record<string, any>} write @param {string} format */
 function checkKind(write, format) {
   for (const [name, only] of Object.entries(ONLY)) {
-    if (write[name] && format !== only) throw new UsageError(`--${name} is for ${only.toUpperCase()} files`);
+    if (write[name] && !only.includes(format)) throw new UsageError(`--${name} is for ${only.map((other) => other.toUpperCase()).join(' and ')} files`);
   }
 }
 

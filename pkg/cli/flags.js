@@ -23,7 +23,7 @@ import { UsageError } from './usage.js';
 export const WORDS = {
   ...FLAGS,
   faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
-  texture: 'pictures of the points on the mesh, so many texels wide; for GLB files',
+  texture: 'pictures of the points on the mesh, so many texels wide; for GLB and USDZ files',
   maps: 'which pictures',
   error: 'largest distance between the mesh as it was and as it is, a share of the diagonal',
   up: 'which way is up in the result; default: what its format asks for',

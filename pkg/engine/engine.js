@@ -6,7 +6,7 @@ import { counted } from './amount.js';
 import { direction } from './axes.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
-import { left, lightened, meshArgument, ownMesh, shownPoints } from './light.js';
+import { left, lightened, meshArgument, ownMesh, pointsBeside, shownPoints } from './light.js';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
@@ -144,6 +144,19 @@ export class Engine {
     const { own, transfer, ...watch } = this.#check('simplify', options);
     const args = [meshArgument(mesh, transfer), own];
     return lightened(mesh, await this.#runIn('light', { call: 'simplify', args }, watch));
+  }
+
+  /**
+   * @template {import('../types.js').TriangleMesh} T
+   * @param {T} mesh
+   * @param {PointCloud} cloud
+   * @param {import('../types.js').TextureOptions & { triangles?: number } & CallOptions} [options]
+   * @returns {Promise<import('../types.js').Textured<T>>}
+   */
+  async texture(mesh, cloud, options) {
+    const { own, transfer, ...watch } = this.#check('texture', options);
+    const args = [meshArgument(mesh, transfer), pointsBeside(cloud, mesh), own];
+    return lightened(mesh, await this.#runIn('light', { call: 'texture', args }, watch));
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */

@@ -1,5 +1,5 @@
 /** Meshes with fewer triangles, and with pictures: what wasm takes of them, and what it made beside what they had. */
-import { resultArgument } from './clouds.js';
+import { cloudArgument, resultArgument } from './clouds.js';
 import { badInput } from './inputs.js';
 import { select } from './preparing.js';
 
@@ -33,6 +33,19 @@ export function ownMesh(mesh) {
  */
 export function shownPoints({ positions, colors }) {
   return { positions: positions.slice(), colors: colors?.slice() };
+}
+
+/**
+ * The same of a scan that may be counted from another origin than the mesh.
+ * @param {PointCloud} cloud
+ * @param {{ origin?: [number, number, number] }} mesh
+ * @returns {PointCloud}
+ */
+export function pointsBeside(cloud, { origin = [0, 0, 0] }) {
+  const { origin: own = [0, 0, 0], ...given } = cloudArgument(cloud);
+  const moved = own.map((x, axis) => x - origin[axis]);
+  if (moved.every((x) => x === 0)) return shownPoints(given);
+  return { positions: Float64Array.from(given.positions, (x, i) => x + moved[i % 3]), colors: given.colors?.slice() };
 }
 
 /** Those of them that a recipe left. @param {PointCloud} points @param {SurfaceMesh} mesh */

@@ -87,7 +87,7 @@ const FIRST = { prepare: RECIPE };
 const LAST = { texture: nested('texture', TEXTURE) };
 
 /** The command line has its flags from here. */
-export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: TEXTURE, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: { triangles: SIMPLIFY.triangles, ...TEXTURE }, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.

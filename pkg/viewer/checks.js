@@ -7,7 +7,7 @@ import { badInput, expectArray } from '../engine/inputs.js';
 /** @param {Drawable} what */
 export function expectDrawable(what) {
   if (typeof what !== 'object' || what === null) throw badInput('what is shown', 'a cloud, a mesh, or a GLB that was read', what);
-  const { positions, normals, colors, indices } = what;
+  const { positions, normals, colors, indices, uvs, tangents } = what;
   expectArray('positions', positions, Float32Array, Float64Array);
   if (positions.length === 0) throw new PointweaveError({ code: 'empty-cloud', message: 'there are no points to show' });
   const { length } = positions;
@@ -19,6 +19,11 @@ export function expectDrawable(what) {
   if (colors) {
     expectArray('colors', colors, Uint8Array);
     expectLength('colors', colors.length, length);
+  }
+  for (const [name, values, each] of /** @type {const} */ ([['uvs', uvs, 2], ['tangents', tangents, 4]])) {
+    if (!values) continue;
+    expectArray(name, values, Float32Array);
+    expectLength(name, values.length, (each * length) / 3);
   }
   if (!indices) return;
   expectArray('indices', indices, Uint32Array);

@@ -3,6 +3,7 @@ import { BufferAttribute, BufferGeometry, LineSegments, Mesh, Points, SRGBColorS
 import { typicalSpacing } from './density.js';
 import { toFrame } from './frame.js';
 import { boxMaterial, edgeMaterial, meshMaterial, pointMaterial } from './materials.js';
+import { wear } from './pictures.js';
 
 /** @import { Drawable, Frame, Placed } from '../viewer.js' */
 /** @import { Rgb } from './colors.js' */
@@ -13,9 +14,14 @@ const COVER = { none: 1.8, unoriented: 1.6, oriented: 0.9 };
 /** However sparse the scan, its points stay points: a share of the diagonal. */
 const LARGEST = 0.015;
 
-/** A layer of a cloud, or of a mesh where there are indices. @param {Drawable} source @param {Frame} frame */
-export function layerOf(source, frame) {
-  return source.indices ? meshLayer(source, frame) : cloudLayer(source, frame);
+/**
+ * A layer of a cloud, or of a mesh where there are indices. Pictures of a mesh come later, which `changed` is told.
+ * @param {Drawable} source
+ * @param {Frame} frame
+ * @param {() => void} changed
+ */
+export function layerOf(source, frame, changed) {
+  return source.indices ? meshLayer(source, frame, changed) : cloudLayer(source, frame);
 }
 
 /** @param {Drawable} source @param {Frame} frame */
@@ -26,12 +32,15 @@ function cloudLayer(source, frame) {
   return colored(still(new Points(geometry, pointMaterial({ colored: false, normals, diameter: diameter(positions, normals) }))), source);
 }
 
-/** @param {Drawable} source @param {Frame} frame */
-function meshLayer(source, frame) {
+/** @param {Drawable} source @param {Frame} frame @param {() => void} changed */
+function meshLayer(source, frame, changed) {
   const geometry = geometryOf(source, frame);
   geometry.setIndex(new BufferAttribute(/** @type {Uint32Array} */ (source.indices), 1));
   if (!source.normals) geometry.computeVertexNormals();
-  return colored(still(new Mesh(geometry, meshMaterial())), source);
+  const mesh = still(new Mesh(geometry, meshMaterial()));
+  if (!source.uvs || !source.textures) return colored(mesh, source);
+  wear(mesh, source, changed);
+  return source.textures.color ? mesh : colored(mesh, source);
 }
 
 /** @template {Points | Mesh} Layer @param {Layer} layer @param {Drawable} source */

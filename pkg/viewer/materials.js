@@ -26,6 +26,9 @@ export function meshMaterial(look) {
         vec3 normal = normalize(vNormal);
         bool inner = !gl_FrontFacing && dot(normal, normalize(vViewPosition)) < -0.06;
         if (inner) normal = -normal;
+        #ifdef USE_TANGENT
+          mat3 tbn = mat3(normalize(vTangent), normalize(vBitangent), normal);
+        #endif
         vec3 nonPerturbedNormal = normal;`)
       .replace('#include <opaque_fragment>', /* glsl */ `
         if (inner) outgoingLight *= vec3(0.8, 0.72, 0.67);

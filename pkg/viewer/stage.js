@@ -49,12 +49,12 @@ export class Stage {
     return joined([...this.layers.values()].map(({ outline }) => outline));
   }
 
-  /** Replaces a layer, or removes it. @param {string} name @param {Drawable | null} what @param {Frame} frame */
-  set(name, what, frame) {
+  /** Replaces a layer, or removes it. @param {string} name @param {Drawable | null} what @param {Frame} frame @param {() => void} changed */
+  set(name, what, frame, changed) {
     for (const object of this.layers.get(name)?.objects ?? []) this.#remove(object);
     this.layers.delete(name);
     if (!what) return;
-    const object = layerOf(what, frame);
+    const object = layerOf(what, frame, changed);
     this.add(name, [object], thinned(/** @type {Float32Array} */ (object.geometry.getAttribute('position').array)));
     this.root.add(object);
   }

@@ -121,7 +121,7 @@ class CanvasViewer extends Aimed {
     if (what) expectDrawable(what);
     const first = this.#stage.layers.size === 0;
     this.box ??= frameOf(/** @type {Drawable} */ (what));
-    this.#stage.set(name, what, this.box);
+    this.#stage.set(name, what, this.box, () => this.#ask());
     this.#ground.stale();
     if (what && first) {
       const { up, seenFromAbove, origin } = what;

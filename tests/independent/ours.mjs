@@ -3,6 +3,7 @@
 
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { crc32, deflateSync } from 'node:zlib';
 import { createEngine } from 'pointweave';
 import validator from 'gltf-validator';
 
@@ -77,6 +78,28 @@ function meshOf() {
   };
 }
 
+/** A picture of 2 x 2 pixels of one colour. */
+function png(color) {
+  const chunk = (name, data) => {
+    const body = Buffer.concat([Buffer.from(name), data]);
+    const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
+    length.writeUInt32BE(data.length);
+    sum.writeUInt32BE(crc32(body));
+    return Buffer.concat([length, body, sum]);
+  };
+  const row = [0, ...color, ...color];
+  const head = chunk('IHDR', Buffer.from([0, 0, 0, 2, 0, 0, 0, 2, 8, 2, 0, 0, 0]));
+  return new Uint8Array(Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), head, chunk('IDAT', deflateSync(Buffer.from([...row, ...row]))), chunk('IEND', Buffer.alloc(0))]));
+}
+
+/** The mesh with pictures. */
+function textured(mesh) {
+  const next = random(5);
+  const picture = (color) => ({ width: 2, height: 2, type: 'image/png', data: png(color) });
+  const uvs = Float32Array.from({ length: (2 * mesh.positions.length) / 3 }, () => Math.round(next() * 1024) / 1024);
+  return { ...mesh, uvs, textures: { color: picture([200, 100, 50]), normal: picture([128, 128, 255]) } };
+}
+
 const engine = await createEngine({ threads: 1, worker: false });
 if (job === 'write') await write();
 else await read();
@@ -88,9 +111,10 @@ async function write() {
   const local = cloudOf();
   const surveyed = { ...local, origin: ORIGIN };
   const mesh = meshOf();
+  const pictured = textured(mesh);
   const plain = (thing) => Object.fromEntries(Object.entries(thing).map(([key, value]) => [key, ArrayBuffer.isView(value) ? [...value] : value]));
   const attributes = Object.fromEntries(Object.entries(local.attributes).map(([key, values]) => [key, [...values]]));
-  writeFileSync(join(folder, 'truth.json'), JSON.stringify({ cloud: { ...plain(local), attributes }, mesh: plain(mesh), origin: ORIGIN }));
+  writeFileSync(join(folder, 'truth.json'), JSON.stringify({ cloud: { ...plain(local), attributes }, mesh: { ...plain(mesh), uvs: [...pictured.uvs] }, origin: ORIGIN }));
   const options = {
     ply: [{ encoding: 'binary' }, { encoding: 'ascii' }], glb: [{}, { quantize: true }],
   };
@@ -108,6 +132,7 @@ async function write() {
       }
     }
   }
+  writeFileSync(join(folder, 'ours', 'mesh-pictures.usdz'), await engine.write(pictured, { format: 'usdz' }));
   writeFileSync(join(folder, 'validated.json'), JSON.stringify(reports));
 }
 

@@ -17,7 +17,7 @@ import pymeshlab
 import rasterio
 import rasterio.shutil
 import trimesh
-from pxr import Usd, UsdGeom, UsdValidation
+from pxr import Usd, UsdGeom, UsdUtils, UsdValidation
 
 FOLDER = sys.argv[1]
 TRUTH = json.load(open(os.path.join(FOLDER, "truth.json")))
@@ -234,6 +234,12 @@ def by_usd(name):
         extent=(np.array(geometry.GetExtentAttr().Get()), np.array(UsdGeom.PointBased.ComputeExtent(geometry.GetPointsAttr().Get())), 1e-6),
         errors=(errors_of(stage), [], 0),
     )
+    if "pictures" in name:
+        pairs["colors"] = (primvars.GetPrimvar("displayColor").HasValue(), False, 0)
+        pairs["places"] = (primvars.GetPrimvar("st").Get(), np.array(MESH["uvs"]).reshape(-1, 2) * [1, -1] + [0, 1], 1e-7)
+        layers, assets, missing = UsdUtils.ComputeAllDependencies(ours(name))
+        pairs["pictures"] = ([os.path.basename(asset) for asset in assets], [name + "[color.png]", name + "[normal.png]"], 0)
+        pairs["missing"] = (missing, [], 0)
     if name.startswith("mesh"):
         mesh = UsdGeom.Mesh(prim)
         pairs["triangles"] = (np.asarray(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3), TRIANGLES, 0)

@@ -1,7 +1,7 @@
 // Never run: `tsc` checks that the package's types say what its documentation does, and that the modules agree.
 
 import {
-  DEFAULTS, PointweaveError, createEngine, flip, inspect, prepare, read, reconstruct, reduce, sample, sideInWords, simplify, write,
+  DEFAULTS, PointweaveError, createEngine, flip, inspect, prepare, read, reconstruct, reduce, sample, sideInWords, simplify, texture, write,
   type CloudInfo, type Engine, type FileCloud, type Format, type OutputFormat, type PointCloud, type ReducedCloud, type Stage,
   type Prepared, type Step, type SurfaceMesh,
 } from 'pointweave';
@@ -33,7 +33,7 @@ type Equal<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ?
 type Method = Exclude<keyof Engine, 'build' | 'threads' | 'reason'>;
 /** The module behind an engine declares the same: `any` in it would agree with everything. */
 export const behind: { [name in Method]: Equal<Parameters<Made[name]>, Parameters<Engine[name]>> } & { [name in Method]: Equal<ReturnType<Made[name]>, ReturnType<Engine[name]>> } =
-  { prepare: true, simplify: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
+  { prepare: true, simplify: true, texture: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
 
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });
@@ -44,8 +44,9 @@ export async function use(positions: Float32Array, precise: Float64Array, signal
   const viewpoints = { positions: Float64Array.of(0, 0, 2), of: new Uint32Array(positions.length / 3) };
   const seen: SurfaceMesh<Float32Array> = await reconstruct({ positions, viewpoints, up: [0, 0, 1], seenFromAbove: false }, { orientation: 'viewpoints', flip: true });
   const light: SurfaceMesh<Float32Array> = await simplify(await reconstruct({ positions }, { triangles: 1000 }), { triangles: 100 });
+  const painted: SurfaceMesh<Float32Array> = await texture(light, { positions }, { triangles: 100, size: 256, maps: ['color'] });
   const bare = await simplify({ positions, indices: light.indices }, { error: 0.01 });
-  console.log(bare.positions, bare.report.triangles, light.report.simplified?.error.max);
+  console.log(bare.positions, bare.report.triangles, light.report.simplified?.error.max, painted.textures?.color?.data);
   // @ts-expect-error no triangles
   await simplify({ positions }, { triangles: 100 });
   const other: SurfaceMesh<Float32Array> = flip(seen, { triangle: 0 });

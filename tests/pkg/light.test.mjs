@@ -10,7 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { WebIO } from '@gltf-transform/core';
 import { validateBytes } from 'gltf-validator';
-import { createEngine, flip, read, reconstruct, simplify, write } from 'pointweave';
+import { createEngine, flip, read, reconstruct, simplify, texture, write } from 'pointweave';
 import { load } from 'pointweave/core';
 import { sphere } from './support.mjs';
 
@@ -92,9 +92,24 @@ test('a textured mesh is a GLB file that the validator has nothing to say about'
       assert.deepEqual(texture.getImage(), own.data);
     }
   }
+  const usdz = Buffer.from(await write(mesh, { format: 'usdz' }));
+  for (const { data } of Object.values(mesh.textures)) assert.equal(usdz.indexOf(data) % 64, 0, 'the pictures lie in USDZ as they are');
   const other = flip(mesh);
   assert.deepEqual(other.tangents.slice(0, 4), mesh.tangents.slice(0, 4).map((x) => -x));
   assert.ok(!('uvs' in (await simplify(mesh, { triangles: 100 }))));
+});
+
+test('a mesh that is there is textured as one of the same call, wherever its scan counts from', async () => {
+  const whole = { reduce: false, triangles: 300, texture: { size: 128 } };
+  const { uvs, textures } = await reconstruct(scan, whole);
+  const mesh = await reconstruct(scan, { reduce: false });
+  const apart = { ...scan, positions: Float64Array.from(scan.positions, (x, i) => x - [8, 0, -4][i % 3]), origin: [8, 0, -4] };
+  for (const points of [scan, apart]) {
+    const made = await texture(mesh, points, { triangles: 300, size: 128 });
+    assert.deepEqual([made.uvs, made.textures], [uvs, textures]);
+    assert.equal(made.report.simplified.from, mesh.report.triangles);
+  }
+  await assert.rejects(texture(mesh, scan, { size: 3 }), { code: 'bad-option' });
 });
 
 test('an engine with a worker makes the same bytes, and an abort ends it', async () => {
@@ -124,7 +139,7 @@ test('the command line makes meshes light, and textures them', async (t) => {
   assert.equal(document.getRoot().listTextures().length, 1);
   for (const [args, words] of [
     [['simplify', 'mesh.ply', '-o', 'x.glb'], /how light/], [['simplify', 'scan.ply', '-o', 'x.glb', '--triangles', '500'], /no triangles/],
-    [['reconstruct', 'scan.ply', '-o', 'x.ply', '--texture', '128'], /GLB/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--maps', 'color'], /--texture/],
+    [['reconstruct', 'scan.ply', '-o', 'x.ply', '--texture', '128'], /GLB and USDZ/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--maps', 'color'], /--texture/],
     [['simplify', 'mesh.ply', '-o', 'x.glb', '--triangles', '0'], /at least 1/],
   ]) await assert.rejects(pointweave(...args), ({ stderr }) => words.test(stderr), args.join(' '));
 });

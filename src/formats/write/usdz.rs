@@ -1,6 +1,6 @@
-//! USDZ (Pixar; Apple's AR Quick Look): one stored layer as text, a mesh or points under a node that carries the origin in
-//! double precision. y is up in metres. Colours are the primvar `displayColor`, linear as USD wants them, and the material
-//! shows them; attributes are primvars of their names.
+//! USDZ (Pixar; Apple's AR Quick Look): a stored layer as text, a mesh or points under a node that carries the origin in
+//! double precision, and the pictures of a mesh beside it. y is up in metres. Colours are the primvar `displayColor`, linear as
+//! USD wants them, and the material shows them, or the picture in their place; attributes are primvars of their names.
 
 use super::glb::{bounds, check_finite, unit_normals};
 use super::local::Local;
@@ -8,13 +8,85 @@ use super::values::linear;
 use super::zip::{Packing, archive};
 use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
-use crate::formats::raw_cloud::RawCloud;
+use crate::formats::raw_cloud::{RawCloud, Skin};
 use std::fmt::{Display, Write};
 
 /// What the material needs to show the colours of the vertices.
-const COLORED: &str = "        def Shader \"Colors\"\n        {\n            \
-     uniform token info:id = \"UsdPrimvarReader_float3\"\n            \
-     string inputs:varname = \"displayColor\"\n            float3 outputs:result\n        }\n";
+const COLORED: &str = r#"        def Shader "Colors"
+        {
+            uniform token info:id = "UsdPrimvarReader_float3"
+            string inputs:varname = "displayColor"
+            float3 outputs:result
+        }
+"#;
+
+/// What pictures need to know where they lie.
+const PLACED: &str = r#"        def Shader "Places"
+        {
+            uniform token info:id = "UsdPrimvarReader_float2"
+            string inputs:varname = "st"
+            float2 outputs:result
+        }
+"#;
+
+/// A picture of a mesh: a file of the archive, and what its values mean.
+struct Picture<'a> {
+    file: &'static str,
+    png: &'a [u8],
+    /// The shader's input that it goes to.
+    input: &'static str,
+    shader: &'static str,
+    meaning: &'static str,
+}
+
+impl Picture<'_> {
+    fn all(skin: &Skin) -> Vec<Picture<'_>> {
+        let color = skin.color.as_ref().map(|png| Picture {
+            file: "color.png",
+            png,
+            input: "color3f inputs:diffuseColor",
+            shader: "ColorPicture",
+            meaning: "token inputs:sourceColorSpace = \"sRGB\"",
+        });
+        let normal = skin.normal.as_ref().map(|png| Picture {
+            file: "normal.png",
+            png,
+            input: "normal3f inputs:normal",
+            shader: "NormalPicture",
+            // Bytes stand for -1 to 1.
+            meaning: "token inputs:sourceColorSpace = \"raw\"\n            float4 inputs:scale = (2, 2, 2, 1)\n            \
+                      float4 inputs:bias = (-1, -1, -1, 0)",
+        });
+        color.into_iter().chain(normal).collect()
+    }
+
+    fn connection(&self) -> String {
+        let Picture { input, shader, .. } = self;
+        format!("            {input}.connect = </Scan/Material/{shader}.outputs:rgb>\n")
+    }
+
+    fn texture(&self) -> String {
+        let Picture {
+            file,
+            shader,
+            meaning,
+            ..
+        } = self;
+        format!(
+            r#"        def Shader "{shader}"
+        {{
+            uniform token info:id = "UsdUVTexture"
+            asset inputs:file = @{file}@
+            float2 inputs:st.connect = </Scan/Material/Places.outputs:result>
+            token inputs:wrapS = "clamp"
+            token inputs:wrapT = "clamp"
+            {meaning}
+            float3 outputs:rgb
+        }}
+"#
+        )
+    }
+}
 
 /// Writes points and, with `triangles`, a mesh.
 ///
@@ -63,7 +135,18 @@ pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>) -> Result<Vec<u
             triples(&normals),
         );
     }
-    if let Some(colors) = &cloud.colors {
+    let skin = cloud.skin().filter(|_| triangles.is_some());
+    let pictures = skin.map(Picture::all).unwrap_or_default();
+    if let Some(Skin { uvs, .. }) = skin {
+        check_finite("uvs", uvs, 2)?;
+        // From the bottom up, as USD has it.
+        let places = uvs.chunks_exact(2);
+        let places = places.map(|uv| format!("({}, {})", uv[0], 1.0 - uv[1]));
+        array(&mut layer, "texCoord2f[] primvars:st", A_VERTEX, places);
+    }
+    let pictured = skin.is_some_and(|skin| skin.color.is_some());
+    let colors = cloud.colors.as_ref().filter(|_| !pictured);
+    if let Some(colors) = colors {
         let linear: Vec<f32> = (0..=u8::MAX).map(|c| linear(c) as f32).collect();
         let values: Vec<f32> = colors.iter().map(|&c| linear[usize::from(c)]).collect();
         let name = "color3f[] primvars:displayColor";
@@ -78,18 +161,27 @@ pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>) -> Result<Vec<u
               token outputs:surface.connect = </Scan/Material/Surface.outputs:surface>\n\n        \
               def Shader \"Surface\"\n        {\n            uniform token info:id = \"UsdPreviewSurface\"\n            \
               float inputs:metallic = 0\n            float inputs:roughness = 0.9\n";
-    if cloud.colors.is_some() {
+    if colors.is_some() {
         layer += "            color3f inputs:diffuseColor.connect = </Scan/Material/Colors.outputs:result>\n";
     }
+    for picture in &pictures {
+        layer += &picture.connection();
+    }
     layer += "            token outputs:surface\n        }\n";
-    if cloud.colors.is_some() {
+    if colors.is_some() {
         layer += COLORED;
     }
+    if !pictures.is_empty() {
+        layer += PLACED;
+    }
+    for picture in &pictures {
+        layer += &picture.texture();
+    }
     layer += "    }\n}\n";
-    Ok(archive(
-        &[("scan.usda", layer.as_bytes())],
-        Packing::StoredAt64,
-    ))
+    // The layer comes first: it is what the archive shows.
+    let mut files = vec![("scan.usda", layer.as_bytes())];
+    files.extend(pictures.iter().map(|picture| (picture.file, picture.png)));
+    Ok(archive(&files, Packing::StoredAt64))
 }
 
 /// What is said of an array: that it has a value a vertex, or nothing.
@@ -120,7 +212,9 @@ fn triple(values: &[f32]) -> String {
 
 /// A name for each attribute that USD takes: letters, digits and underscores; no name twice, and none that USD has itself.
 fn names(attributes: &[Attribute]) -> Vec<String> {
-    let mut names: Vec<String> = vec!["displayColor".into(), "displayOpacity".into()];
+    let mut names: Vec<String> = ["displayColor", "displayOpacity", "st"]
+        .map(String::from)
+        .into();
     let own = names.len();
     for Attribute { name, .. } in attributes {
         let known = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
