@@ -12,6 +12,7 @@ import { NAMES as VIEWS, SIDES } from '../../www/src/look/names.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
 import { STAGES } from '../../www/src/results/stages.js';
 import { ROLES } from '../../www/src/session/column-chooser.js';
+import { PRESETS } from '../../www/src/session/light-models.js';
 import { FORMATS, NAMES } from '../../www/src/session/saving.js';
 import { ACTIONS } from '../../www/src/tidy/tidy.js';
 import { PATIENCE, start } from './browser.mjs';
@@ -42,6 +43,7 @@ function textsOfTables() {
     ...fields, ...Object.values(TARGETS).map(({ label }) => label), ...Object.values(SAMPLES).map(({ title }) => title), ...Object.values(UNITS),
     ...Object.values(VIEWS), ...Object.values(SIDES), ...Object.values(MESSAGES).flatMap(Object.values), ...Object.values(STAGES),
     ...ROLES.map(([, name]) => name), ...Object.values(FORMATS).flatMap(Object.values).flatMap(({ use, prints }) => [use, prints ?? '']), ...Object.values(NAMES),
+    ...Object.values(PRESETS).flatMap(({ label, kinds }) => [label, ...kinds.map(({ use }) => use)]),
     ...Object.values(ACTIONS).flatMap(Object.values),
     TELLS, ...Object.values(TOLD_BY), ...Object.values(names), density.title, ...Object.values(error.titles), sharp.title, sharp.sharp, sharp.smooth,
   ];

@@ -73,7 +73,7 @@ export class App {
   #dropped = new DroppedList((dropped) => this.#openOne(dropped.file));
   #message = new MessageCard(this.#choose);
   #progress = new ProgressBar(() => this.#session.cancel());
-  #saving = new Saving(this.#session, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
+  #saving = new Saving(this.#session, this.#look, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
   #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, say('comparison')));
 

@@ -15,7 +15,7 @@ import { followTheme } from './theme.js';
  * @import { Axis, Paint, PaintName, Side, Subject } from 'pointweave/viewer'
  * @import { Key } from '../keys.js'
  * @import { Outcome, Scan } from '../session/session.js'
- * @typedef {'points' | 'reduced' | 'mesh' | 'kept'} View `kept`: a mesh of other settings, to compare with
+ * @typedef {'points' | 'reduced' | 'mesh' | 'kept' | 'light'} View `kept`: a mesh of other settings, to compare with; `light`: a model with pictures
  * @typedef {'points' | 'reduced' | 'mesh' | 'compare'} Choice
  */
 
@@ -183,6 +183,14 @@ export class Look {
     this.#split.offerKept(true);
     this.#show(this.#view);
     announce(say('The mesh is kept. The next one is shown beside it.'));
+  }
+
+  /** Puts a light model beside the scan, as it would be saved; null takes it away. @param {import('pointweave').SurfaceMesh | null} model */
+  showLight(model) {
+    this.#viewer?.set('light', model);
+    this.#split.offerLight(Boolean(model));
+    if (model) this.#view = 'compare';
+    if (this.#scan) this.#show(this.#view);
   }
 
   /** Has the person choose a triangle of the mesh in the picture, or no more. @param {import('./piece.js').Chosen | null} chosen */

@@ -68,10 +68,21 @@ export class Split {
 
   /** A mesh was kept, to be put beside another; or there is none. */
   offerKept(/** @type {boolean} */ possible) {
+    this.#offer('kept', possible);
+  }
+
+  /** @param {'kept' | 'light'} view @param {boolean} possible */
+  #offer(view, possible) {
     for (const select of [this.#left, this.#right]) {
-      for (const option of select.options) if (option.value === 'kept') option.hidden = option.disabled = !possible;
-      if (!possible && select.value === 'kept') select.value = select === this.#left ? 'points' : 'mesh';
+      for (const option of select.options) if (option.value === view) option.hidden = option.disabled = !possible;
+      if (!possible && select.value === view) select.value = select === this.#left ? 'points' : 'mesh';
     }
+  }
+
+  /** A light model is put beside the scan; or there is none. @param {boolean} possible */
+  offerLight(possible) {
+    this.#offer('light', possible);
+    if (possible) this.#right.value = 'light';
   }
 
   /** The kept mesh at the left, the mesh of now at the right. */

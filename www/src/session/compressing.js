@@ -10,6 +10,11 @@ export function compressAside(glb) {
   return inWorker(glb, 'small');
 }
 
+/** The same, with pictures as WebP, or JPEG where the browser writes no WebP. @param {Uint8Array} glb */
+export function webAside(glb) {
+  return inWorker(glb, 'web');
+}
+
 /** A GLB without that compression. @param {Uint8Array} glb */
 export function expandAside(glb) {
   return inWorker(glb, 'plain');
@@ -18,7 +23,7 @@ export function expandAside(glb) {
 /**
  * Keeps the page free. The program is fetched at the first call.
  * @param {Uint8Array} glb
- * @param {'small' | 'plain'} to
+ * @param {'small' | 'web' | 'plain'} to
  * @returns {Promise<Uint8Array>}
  */
 function inWorker(glb, to) {

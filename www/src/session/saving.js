@@ -1,6 +1,7 @@
 import { announce, byId, element } from '../dom.js';
 import { scaled } from '../measure/lengths.js';
 import { compressAside } from './compressing.js';
+import { WebSaving } from './web-saving.js';
 import { saveFile } from './files.js';
 import * as format from '../results/format.js';
 import { printingWords, solidOf } from '../results/printing.js';
@@ -53,6 +54,7 @@ export class Saving {
   #close = byId('close-holes', HTMLButtonElement);
   /** The mesh can be printed. */
   #prints = false;
+  #web;
   /** What is offered now; files of an earlier one are not waited for. @type {Outcome | null} */
   #outcome = null;
   /** Written files of the outcome. @type {Map<string, Promise<Blob | null>>} */
@@ -62,11 +64,13 @@ export class Saving {
 
   /**
    * @param {Session} session
+   * @param {import('../look/look.js').Look} look
    * @param {(error: unknown, name: string) => void} fail
    * @param {() => void} close  has all holes closed
    */
-  constructor(session, fail, close) {
+  constructor(session, look, fail, close) {
     this.#session = session;
+    this.#web = new WebSaving(session, look, fail);
     this.#fail = fail;
     this.#button.addEventListener('click', () => this.#first && this.#save(...this.#first));
     this.#close.addEventListener('click', close);
@@ -84,6 +88,7 @@ export class Saving {
     this.#detail.textContent = '';
     this.#note.textContent = '';
     this.#showPrinting(outcome);
+    this.#web.offer(outcome);
     if (!outcome) return;
     const what = outcome.mesh ? 'mesh' : 'reduced';
     this.#what.textContent = outcome.mesh ? say('Save the mesh') : say('Save the points');

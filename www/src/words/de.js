@@ -1,8 +1,10 @@
 import tidy from './de-tidy.js';
+import web from './de-web.js';
 
 /** The page's texts in German, by the English ones. @type {Record<string, string>} */
 export default {
   ...tidy,
+  ...web,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',
   'Skip to the controls': 'Zu den Einstellungen springen',
   'Points in, a light and correct model out': 'Punkte hinein, ein leichtes und korrektes Modell heraus',

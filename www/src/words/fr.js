@@ -1,8 +1,10 @@
 import tidy from './fr-tidy.js';
+import web from './fr-web.js';
 
 /** The page's texts in French, by the English ones. @type {Record<string, string>} */
 export default {
   ...tidy,
+  ...web,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave : un scan 3D devient un modèle léger et correct',
   'Skip to the controls': 'Aller aux réglages',
   'Points in, a light and correct model out': 'Des points en entrée, un modèle léger et correct en sortie',

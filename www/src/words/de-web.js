@@ -1,0 +1,21 @@
+/** Texts of *Save for the web* in German, by the English ones. @type {Record<string, string>} */
+export default {
+  'Save for the web': 'Fürs Web speichern',
+  'What it is for': 'Wofür es ist',
+  'Thumbnail': 'Vorschau',
+  'Catalogue': 'Katalog',
+  'Close-up': 'Nahaufnahme',
+  'AR': 'AR',
+  'Print': 'Druck',
+  'for the web': 'fürs Web',
+  'for Android': 'für Android',
+  '{triangles} triangles, {size} texels': '{triangles} Dreiecke, {size} Texel',
+  'Making the light model': 'Das leichte Modell entsteht',
+  '{triangles} triangles with pictures of {width} × {height}.': '{triangles} Dreiecke mit Bildern von {width} × {height}.',
+  'Off the full mesh by {rms} of the diagonal (RMS), {max} at most.': 'Vom vollen Netz {rms} der Diagonale entfernt (RMS), höchstens {max}.',
+  'The scan has no colours: the picture holds the relief alone.': 'Der Scan hat keine Farben: Das Bild enthält nur das Relief.',
+  'A coordinate of 1 is taken for a metre. Say its unit below.': 'Eine Koordinate von 1 gilt als ein Meter. Die Einheit lässt sich unten angeben.',
+  'Save the model as': 'Modell speichern als',
+  'light model': 'leichtes Modell',
+  'Light model': 'Leichtes Modell',
+};

@@ -1,0 +1,21 @@
+/** Texts of *Save for the web* in French, by the English ones. @type {Record<string, string>} */
+export default {
+  'Save for the web': 'Enregistrer pour le web',
+  'What it is for': 'À quoi il sert',
+  'Thumbnail': 'Vignette',
+  'Catalogue': 'Catalogue',
+  'Close-up': 'Gros plan',
+  'AR': 'RA',
+  'Print': 'Impression',
+  'for the web': 'pour le web',
+  'for Android': 'pour Android',
+  '{triangles} triangles, {size} texels': '{triangles} triangles, {size} texels',
+  'Making the light model': 'Le modèle léger est en cours',
+  '{triangles} triangles with pictures of {width} × {height}.': '{triangles} triangles avec des images de {width} × {height}.',
+  'Off the full mesh by {rms} of the diagonal (RMS), {max} at most.': 'À {rms} de la diagonale du maillage complet (RMS), {max} au plus.',
+  'The scan has no colours: the picture holds the relief alone.': 'Le scan n’a pas de couleurs : l’image ne contient que le relief.',
+  'A coordinate of 1 is taken for a metre. Say its unit below.': 'Une coordonnée de 1 compte pour un mètre. Indiquez son unité plus bas.',
+  'Save the model as': 'Enregistrer le modèle en',
+  'light model': 'modèle léger',
+  'Light model': 'Modèle léger',
+};
