@@ -54,6 +54,8 @@ export interface PointWeaveEventMap {
   abort: CustomEvent<AbortDetail>;
   /** The camera has moved; once a frame. */
   'camera-change': CustomEvent<CameraChangeDetail>;
+  /** It could not be shown in the room: there is no Scene Viewer, or no file for Quick Look could be made. */
+  'ar-status': CustomEvent<{ status: 'failed' }>;
 }
 
 /** In the coordinates and the unit of the file, which glTF says are metres. As text, `0.1m 0.2m 0.3m`. */
@@ -81,6 +83,8 @@ export interface Words {
   pause: string;
   play: string;
   fullscreen: string;
+  /** The button that shows it in the room. */
+  ar: string;
   cancel: string;
   retry: string;
   /** What opens the message of an error under its title. */
@@ -158,6 +162,16 @@ export class PointWeaveElement extends HTMLElement {
   exposure: number;
   /** Of the shadow on the ground under a mesh, 0 (default) to 1. */
   shadowIntensity: number;
+  /** Shows a button on devices that can show it in the room: Android's Scene Viewer for a GLB, Quick Look of iPhone and iPad for all. */
+  ar: boolean;
+  /** Which are taken, the first that there is: `'webxr scene-viewer quick-look'` where it is `''`. There is no WebXR. */
+  arModes: string;
+  /** Whether a visitor can change its size there (`'auto'`, default). */
+  arScale: 'auto' | 'fixed';
+  /** Where Scene Viewer puts it. Default `'floor'`. */
+  arPlacement: 'floor' | 'wall';
+  /** The address of a USDZ file for Quick Look; `''`: one is made of what is shown. */
+  iosSrc: string;
   /** `'auto'` (default) takes the poster away when the view is there, `'manual'` when `dismissPoster` says so. */
   reveal: 'auto' | 'manual';
   /** `'auto'` (default) shows how to move it after three seconds, where it has `controls` and nobody has. */
@@ -168,6 +182,10 @@ export class PointWeaveElement extends HTMLElement {
    * `AbortError` where `abort()` was called or the element removed.
    */
   whenLoaded(): Promise<LoadDetail>;
+  /** Whether `ar` is set, and this device can show it in the room. */
+  readonly canActivateAR: boolean;
+  /** What the button does; at a click alone. */
+  activateAR(): Promise<void>;
   /** Sends the poster away, and begins to load. */
   dismissPoster(): void;
   /** Puts the poster back. */

@@ -2,17 +2,18 @@
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { listenToKeys } from '../viewer/keyboard.js';
 import { calm, inSight } from '../viewer/watching.js';
+import { InRoom, SOURCE } from './ar.js';
 import { nextLoad } from './awaited.js';
 import { describe, setOrRemove } from './described.js';
 import { Hotspots } from './hotspots.js';
 import { KEYS } from './keys.js';
 import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
-import { Posed, VIEWER } from './posed.js';
+import { VIEWER } from './posed.js';
 import { Prompt } from './prompt.js';
 import { isNamedGlb, openSource, wishOf } from './source.js';
 import { Speech } from './speech.js';
-import { CAMERA, LIGHT } from './switching.js';
+import { AR, CAMERA, LIGHT } from './switching.js';
 import { themeOf } from './theme.js';
 import { inReach } from './watching.js';
 import { WORDS } from './words.js';
@@ -24,7 +25,7 @@ import { WORDS } from './words.js';
 
 /** Work under way. @typedef {{ src: string, controller: AbortController, share: number, stage: Stage }} Job */
 
-export class PointWeaveElement extends Posed {
+export class PointWeaveElement extends InRoom {
   /** What people see and hear; assign other words for another language. @type {Words} */
   static words = WORDS;
   /** As that of `createEngine`, for files that are elsewhere. @type {EngineOptions['wasmUrl']} */
@@ -35,8 +36,6 @@ export class PointWeaveElement extends Posed {
   #parts = buildParts(this.attachShadow({ mode: 'open', delegatesFocus: true }));
   #panels = new Panels(this.#parts);
   #speech = new Speech(this.#parts.spoken);
-  /** What `src` holds, once it is there. @type {Glb | Scan | undefined} */
-  #source;
   /** @type {Job | undefined} */
   #job;
   #attached = false;
@@ -102,6 +101,7 @@ export class PointWeaveElement extends Posed {
     if (before === now) return;
     if (CAMERA.includes(name)) this.pose(name);
     if (LIGHT.includes(name)) this.light();
+    if (AR.includes(name)) this.offerAr();
     switch (name) {
       case 'src':
         this.#forget();
@@ -166,7 +166,7 @@ export class PointWeaveElement extends Posed {
 
   /** What `load` tells, as soon as the view that is asked for is shown; rejects with what `error` tells. */
   async whenLoaded() {
-    return this.loaded && this.#source && this[VIEWER] ? this.#shown(this.src, this.#source, this[VIEWER]) : nextLoad(this);
+    return this.loaded && this[SOURCE] && this[VIEWER] ? this.#shown(this.src, this[SOURCE], this[VIEWER]) : nextLoad(this);
   }
 
   /** Sends the poster away, which `reveal="manual"` keeps until then. */
@@ -183,12 +183,12 @@ export class PointWeaveElement extends Posed {
   }
 
   get #loaded() {
-    return Boolean(this.#source && this[VIEWER]?.has(this.#source.kind === 'scan' ? this.view : this.#best()));
+    return Boolean(this[SOURCE] && this[VIEWER]?.has(this[SOURCE].kind === 'scan' ? this.view : this.#best()));
   }
 
   /** Of what is shown. */
   get report() {
-    const shown = this.#source?.kind === 'scan' ? this.#source.of(this.#best()) : undefined;
+    const shown = this[SOURCE]?.kind === 'scan' ? this[SOURCE].of(this.#best()) : undefined;
     return shown && 'report' in shown ? /** @type {NonNullable<LoadDetail['report']>} */ (shown.report) : null;
   }
 
@@ -221,7 +221,7 @@ export class PointWeaveElement extends Posed {
 
   #update() {
     if (!this.#attached || !this.#near || !this.src) return;
-    if (this.#source) this.#showBest();
+    if (this[SOURCE]) this.#showBest();
     if (this.#job) return;
     if (this.#loaded) this.#panels.hideError();
     else this.#run();
@@ -244,13 +244,13 @@ export class PointWeaveElement extends Posed {
     this.#panels.begin();
     this.#speech.begin();
     try {
-      const [viewer, source] = await Promise.all([this.#ready(), this.#source ?? openSource(src, this.view, work)]);
+      const [viewer, source] = await Promise.all([this.#ready(), this[SOURCE] ?? openSource(src, this.view, work)]);
       signal.throwIfAborted();
-      if (!this.#source) {
+      if (!this[SOURCE]) {
         const shown = source.kind === 'glb' ? await (await import('../viewer/glb.js')).readGlb(source.bytes) : { ...source.cloud, normals: undefined };
         signal.throwIfAborted();
         viewer.show(shown);
-        this.#source = source;
+        this[SOURCE] = source;
         this.#showBest();
       }
       while (source.kind === 'scan' && !viewer.has(this.view)) {
@@ -348,7 +348,7 @@ export class PointWeaveElement extends Posed {
   /** Nothing of the old `src` is shown any more. */
   #forget() {
     this.#abort('src');
-    this.#source = undefined;
+    this[SOURCE] = undefined;
     this[VIEWER]?.clear();
     this.#panels.hideError();
     this.#panels.showPoster(true);
@@ -358,9 +358,9 @@ export class PointWeaveElement extends Posed {
 
   /** What was computed for another target is not shown any more; the points stay. */
   #retarget() {
-    if (this.#source?.kind !== 'scan') return; // the job that fetches will ask for the target when it is there
+    if (this[SOURCE]?.kind !== 'scan') return; // the job that fetches will ask for the target when it is there
     this.#abort('target');
-    this.#source.forget();
+    this[SOURCE].forget();
     for (const view of /** @type {const} */ (['reduced', 'mesh'])) this[VIEWER]?.set(view, null);
     this.#showBest();
   }
@@ -393,7 +393,7 @@ export class PointWeaveElement extends Posed {
 
   /** The poster lies over the picture until that is there, and sent for. */
   #cover() {
-    const ready = this.#loaded || (Boolean(this.#source) && !this.#panels.hasPoster);
+    const ready = this.#loaded || (Boolean(this[SOURCE]) && !this.#panels.hasPoster);
     this.#panels.showPoster(!ready || (this.reveal === 'manual' && !this.#dismissed));
   }
 
@@ -407,16 +407,17 @@ export class PointWeaveElement extends Posed {
 
   /** What can be chosen: all of a scan, for it is computed; what there is in a GLB. */
   get #views() {
-    return this.#source?.kind === 'glb' ? VIEWS.filter((view) => this[VIEWER]?.has(view)) : [...VIEWS];
+    return this[SOURCE]?.kind === 'glb' ? VIEWS.filter((view) => this[VIEWER]?.has(view)) : [...VIEWS];
   }
 
   /** Brings what can be handled in line with the attributes. */
   #dress = () => {
     const { controls, autoRotate } = this;
     const turns = autoRotate && !calm().wanted;
-    const view = this.#source?.kind === 'glb' ? this.#best() : this.view;
-    const state = { present: Boolean(this.#source), controls, turns, paused: this.#paused, views: this.#views, view };
+    const view = this[SOURCE]?.kind === 'glb' ? this.#best() : this.view;
+    const state = { present: Boolean(this[SOURCE]), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
+    this.offerAr();
     if (!this[VIEWER]) return;
     this[VIEWER].insets = controls ? this.#panels.room : { top: 0, bottom: 0 };
     this[VIEWER].interactive = controls;

@@ -184,6 +184,14 @@ export const PANELS = /* css */ `
     outline-offset: 2px;
   }
 
+  .ar {
+    position: absolute;
+    inset: 10px 10px auto auto;
+    border-radius: 14px;
+    background: var(--card);
+    box-shadow: 0 1px 2px rgb(20 30 35 / 8%), 0 4px 16px rgb(20 30 35 / 10%);
+  }
+
   .button {
     display: grid;
     place-items: center;

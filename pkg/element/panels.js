@@ -22,11 +22,11 @@ export class Panels {
 
   /** Puts the words where they belong. @param {Words} words */
   label(words) {
-    const { keys, legend, choices, reset, fullscreen, cancel, retry, errorMore } = this.#parts;
+    const { keys, legend, choices, reset, fullscreen, ar, cancel, retry, errorMore } = this.#parts;
     keys.textContent = words.keys;
     legend.textContent = words.viewsLabel;
     for (const { view, words: place } of choices) place.textContent = words.views[view];
-    for (const [button, label] of /** @type {const} */ ([[reset, words.reset], [fullscreen, words.fullscreen]])) {
+    for (const [button, label] of /** @type {const} */ ([[reset, words.reset], [fullscreen, words.fullscreen], [ar, words.ar]])) {
       button.setAttribute('aria-label', label);
       button.title = label;
     }

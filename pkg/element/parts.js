@@ -8,6 +8,7 @@ const ICONS = {
   pause: 'M9 5v14M15 5v14',
   play: 'M8 5l11 7-11 7z',
   hand: 'M9 11V5a1.5 1.5 0 0 1 3 0v6m0-1.5a1.5 1.5 0 0 1 3 0V12m0-1a1.5 1.5 0 0 1 3 0v4a6 6 0 0 1-6 6h-1a5 5 0 0 1-4-2l-3.6-4.8a1.5 1.5 0 0 1 2.3-1.9L9 14',
+  ar: 'M12 3l8 4.5v9L12 21l-8-4.5v-9zM4 7.5l8 4.5 8-4.5M12 12v9',
   fullscreen: 'M9 4H4v5M15 4h5v5M9 20H4v-5M15 20h5v-5',
 };
 
@@ -49,16 +50,19 @@ export function buildParts(root) {
   const tools = make('div', { class: 'tools', part: 'tools' }, pause, reset, fullscreen);
   const toolbar = make('div', { class: 'toolbar', part: 'toolbar', hidden: '' }, slot('toolbar', views, tools));
 
+  const ar = make('button', { class: 'button', part: 'button ar-button', type: 'button' }, icon('ar'));
+  const arBox = make('div', { class: 'ar', part: 'ar', hidden: '' }, slot('ar-button', ar));
+
   const spoken = make('div', { class: 'spoken', role: 'status' });
 
   const hotspots = make('div', { class: 'hotspots', part: 'hotspots' });
   const prompt = make('div', { class: 'prompt', part: 'prompt', 'aria-hidden': 'true', hidden: '' }, slot('interaction-prompt', icon('hand')));
 
-  const frame = make('div', { class: 'frame', part: 'frame' }, canvas, hotspots, prompt, poster, progress, error, toolbar, keys, spoken);
+  const frame = make('div', { class: 'frame', part: 'frame' }, canvas, hotspots, prompt, poster, progress, error, toolbar, arBox, keys, spoken);
   root.append(frame);
   return {
     canvas, keys, image, poster, progress, progressText, bar, cancel, error, errorTitle, errorMore, errorText, errorDetails, retry,
-    legend, choices, views, reset, pause, fullscreen, tools, toolbar, spoken, frame, hotspots, prompt,
+    legend, choices, views, reset, pause, fullscreen, tools, toolbar, spoken, frame, hotspots, prompt, ar,
   };
 }
 

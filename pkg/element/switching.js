@@ -43,12 +43,15 @@ const MOVING = {
 };
 /** What it is lit by. @type {Record<string, (name: string) => Property>} */
 const LIT = { 'environment-image': text, exposure: amount(1), 'shadow-intensity': amount(0) };
+/** How it is put into the room. @type {Record<string, (name: string) => Property>} */
+const PLACED = { ar: toggle, 'ar-modes': text, 'ar-scale': choice('auto', 'fixed'), 'ar-placement': choice('floor', 'wall'), 'ios-src': text };
 /** @type {Record<string, (name: string) => Property>} */
 const SHOWN = { reveal: choice('auto', 'manual'), 'interaction-prompt': choice('auto', 'none') };
 
 export const CAMERA = Object.keys(MOVING);
 export const LIGHT = Object.keys(LIT);
-const ALL = { ...OWN, ...MOVING, ...LIT, ...SHOWN };
+export const AR = Object.keys(PLACED);
+const ALL = { ...OWN, ...MOVING, ...LIT, ...PLACED, ...SHOWN };
 export const SWITCHED = Object.keys(ALL);
 
 /** @param {string} attribute */
@@ -60,7 +63,7 @@ export function propertyOf(attribute) {
  * @typedef {Pick<import('../element.js').PointWeaveElement, 'cameraOrbit' | 'cameraTarget' | 'fieldOfView' | 'minCameraOrbit' |
  *   'maxCameraOrbit' | 'minFieldOfView' | 'maxFieldOfView' | 'disableZoom' | 'disablePan' | 'autoRotateDelay' | 'environmentImage' |
  *   'exposure' | 'shadowIntensity' | 'reveal' | 'interactionPrompt' | 'src' | 'alt' | 'poster' | 'flip' | 'autoRotate' | 'ratio' |
- *   'count' | 'threads' | 'view' | 'loading' | 'up' | 'orientation'>} Switched
+ *   'count' | 'threads' | 'view' | 'loading' | 'up' | 'orientation' | 'ar' | 'arModes' | 'arScale' | 'arPlacement' | 'iosSrc'>} Switched
  */
 
 class Plain extends Base {}

@@ -12,6 +12,7 @@ export const WORDS = {
   pause: 'Pause turning',
   play: 'Turn',
   fullscreen: 'Full screen',
+  ar: 'View in your room',
   cancel: 'Cancel',
   retry: 'Try again',
   details: 'Details',

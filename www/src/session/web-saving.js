@@ -136,7 +136,7 @@ export class WebSaving {
 function choice(name, { label, light, kinds }) {
   const row = element('label', { className: 'preset' });
   const words = light && kinds.length < 2
-    ? say('{triangles} triangles, {size} texels', { triangles: format.count(light.triangles), size: light.size })
+    ? say('{triangles} triangles, {size} px', { triangles: format.count(light.triangles), size: light.size })
     : kinds.map((kind) => kind.label).join(', ');
   row.append(
     element('input', { type: 'radio', name: 'preset', value: name }),

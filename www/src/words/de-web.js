@@ -9,7 +9,7 @@ export default {
   'Print': 'Druck',
   'for the web': 'fürs Web',
   'for Android': 'für Android',
-  '{triangles} triangles, {size} texels': '{triangles} Dreiecke, {size} Texel',
+  '{triangles} triangles, {size} px': '{triangles} Dreiecke, {size} px',
   'Making the light model': 'Das leichte Modell entsteht',
   '{triangles} triangles with pictures of {width} × {height}.': '{triangles} Dreiecke mit Bildern von {width} × {height}.',
   'Off the full mesh by {rms} of the diagonal (RMS), {max} at most.': 'Vom vollen Netz {rms} der Diagonale entfernt (RMS), höchstens {max}.',

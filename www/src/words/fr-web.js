@@ -9,7 +9,7 @@ export default {
   'Print': 'Impression',
   'for the web': 'pour le web',
   'for Android': 'pour Android',
-  '{triangles} triangles, {size} texels': '{triangles} triangles, {size} texels',
+  '{triangles} triangles, {size} px': '{triangles} triangles, {size} px',
   'Making the light model': 'Le modèle léger est en cours',
   '{triangles} triangles with pictures of {width} × {height}.': '{triangles} triangles avec des images de {width} × {height}.',
   'Off the full mesh by {rms} of the diagonal (RMS), {max} at most.': 'À {rms} de la diagonale du maillage complet (RMS), {max} au plus.',

@@ -1,0 +1,139 @@
+/**
+ * What is shown, in the room around the visitor: Scene Viewer on Android, which fetches the GLB itself, and Quick Look on iPhone and iPad,
+ * which takes a USDZ file. The button is there only where one of them is.
+ */
+import { Posed } from './posed.js';
+
+/** What `src` holds, once it is there. */
+export const SOURCE = Symbol('source');
+
+const MODES = 'webxr scene-viewer quick-look';
+/** Where Scene Viewer sends those back who do not have it. */
+const FAILED = '#point-weave-no-ar';
+
+export class InRoom extends Posed {
+  /** @type {import('./source.js').Glb | import('./source.js').Scan | undefined} */
+  [SOURCE];
+  /** The address of a USDZ file that was made, and of what. @type {{ of: unknown, href: string } | undefined} */
+  #made;
+
+  /** Whether this device can show it in the room. */
+  get canActivateAR() {
+    return this.#mode !== null;
+  }
+
+  /** Shows it in the room, where a visitor has just clicked. */
+  async activateAR() {
+    const mode = this.#mode;
+    const button = this.#box?.querySelector('button');
+    if (!mode || button?.disabled) return;
+    try {
+      if (button) button.disabled = true;
+      if (mode === 'scene-viewer') this.#openSceneViewer();
+      else await this.#openQuickLook();
+    } catch {
+      this.#fail();
+    } finally {
+      if (button) button.disabled = false;
+    }
+  }
+
+  /** Shows the button, or hides it. */
+  offerAr() {
+    const box = this.#box;
+    if (!box) return;
+    box.hidden = !this.canActivateAR;
+    box.onclick = () => this.activateAR();
+    if (this.#made && this.#made.of !== this.#subject) this.#drop();
+  }
+
+  get #box() {
+    return /** @type {HTMLElement | null} */ (this.shadowRoot?.querySelector('.ar') ?? null);
+  }
+
+  /** What there is to show: a GLB, or the mesh of a scan. */
+  get #subject() {
+    const source = this[SOURCE];
+    return source?.kind === 'glb' ? source : source?.mesh;
+  }
+
+  /** @returns {'scene-viewer' | 'quick-look' | null} */
+  get #mode() {
+    if (!this.ar || !this.src) return null;
+    const wanted = (this.arModes || MODES).split(/\s+/);
+    const can = {
+      'scene-viewer': isAndroid() && this[SOURCE]?.kind === 'glb',
+      'quick-look': hasQuickLook() && Boolean(this.iosSrc || this.#subject),
+    };
+    const found = /** @type {(keyof typeof can)[]} */ (wanted).find((mode) => can[mode]);
+    // As model-viewer has it: a file for iOS goes before the list.
+    return found ?? (this.iosSrc && can['quick-look'] ? 'quick-look' : null);
+  }
+
+  #openSceneViewer() {
+    const model = new URL(this.src, document.baseURI);
+    model.hash = '';
+    const params = new URLSearchParams(model.search);
+    params.set('mode', 'ar_preferred');
+    if (!params.has('disable_occlusion')) params.set('disable_occlusion', 'true');
+    if (this.arScale === 'fixed') params.set('resizable', 'false');
+    if (this.arPlacement === 'wall') params.set('enable_vertical_placement', 'true');
+    const back = new URL(location.href);
+    back.hash = FAILED;
+    addEventListener('hashchange', () => {
+      if (location.hash !== FAILED) return;
+      history.back();
+      this.#fail();
+    }, { once: true });
+    const intent = `#Intent;scheme=https;package=com.google.android.googlequicksearchbox;action=android.intent.action.VIEW;S.browser_fallback_url=${encodeURIComponent(back.href)};end;`;
+    this.#follow(`intent://arvr.google.com/scene-viewer/1.2?${params}&file=${encodeURIComponent(model.href)}${intent}`);
+  }
+
+  async #openQuickLook() {
+    const file = new URL(this.iosSrc || (await this.#usdz()), document.baseURI);
+    if (this.arScale === 'fixed') file.hash += `${file.hash ? '&' : ''}allowsContentScaling=0`;
+    this.#follow(file.href, { rel: 'ar', ...(!this.iosSrc && { download: 'model.usdz' }) });
+  }
+
+  /** The address of a file with what is shown, made once. */
+  async #usdz() {
+    const subject = /** @type {import('./source.js').Glb | import('../types.js').SurfaceMesh} */ (this.#subject);
+    if (this.#made?.of === subject) return this.#made.href;
+    const { wasmUrl, workerUrl } = /** @type {typeof import('./element.js').PointWeaveElement} */ (this.constructor);
+    const { usdzOf } = await import('./usdz.js');
+    const blob = new Blob([await usdzOf(subject, { threads: 1, wasmUrl, workerUrl })], { type: 'model/vnd.usdz+zip' });
+    this.#drop();
+    this.#made = { of: subject, href: URL.createObjectURL(blob) };
+    return this.#made.href;
+  }
+
+  /** Quick Look wants a picture in the link, and the link in the page. @param {string} href @param {{ rel?: string, download?: string }} [more] */
+  #follow(href, more) {
+    const link = Object.assign(document.createElement('a'), { href, hidden: true, ...more });
+    link.append(document.createElement('img'));
+    this.shadowRoot?.append(link);
+    link.click();
+    link.remove();
+  }
+
+  #drop() {
+    if (this.#made) URL.revokeObjectURL(this.#made.href);
+    this.#made = undefined;
+  }
+
+  #fail() {
+    this.dispatchEvent(new CustomEvent('ar-status', { detail: { status: 'failed' } }));
+  }
+}
+
+function isAndroid() {
+  return /android/i.test(navigator.userAgent) && !/firefox|OculusBrowser/i.test(navigator.userAgent);
+}
+
+/** iPadOS calls itself a Mac, of which none has more than one finger. Browsers that are not Safari do not say that they can, but can. */
+function hasQuickLook() {
+  const { userAgent, platform, maxTouchPoints } = navigator;
+  if (!/iPad|iPhone|iPod/.test(userAgent) && !(platform === 'MacIntel' && maxTouchPoints > 1)) return false;
+  if (/GSA\//.test(userAgent)) return false;
+  return /CriOS\/|EdgiOS\/|FxiOS\/|DuckDuckGo\//.test(userAgent) || Boolean(document.createElement('a').relList?.supports?.('ar'));
+}
