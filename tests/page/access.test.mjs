@@ -25,7 +25,9 @@ for (const colorScheme of ['light', 'dark']) {
     const { page } = site;
     await site.opened('ball.xyz');
     assert.deepEqual(await violations(site), [], 'as it opens');
-    for (const id of ['more', 'formats', 'share', 'comparison', 'made']) await page.click(`#${id} > summary`);
+    for (const id of ['more', 'web', 'formats', 'share', 'comparison', 'made']) await page.click(`#${id} > summary`);
+    await page.check('input[name="preset"][value="thumbnail"]');
+    await page.waitForSelector('#web-files .format', { timeout: PATIENCE });
     await page.waitForFunction(() => /Each dot/.test(document.querySelector('#chart-note').textContent), null, { timeout: PATIENCE });
     await site.paint('error');
     await page.keyboard.press('4');

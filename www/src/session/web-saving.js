@@ -85,12 +85,12 @@ export class WebSaving {
       if (signal.aborted) return;
       this.#look.showLight(preset.light ? model : null);
       const { words, ready } = this.#told(preset, model);
+      this.#words.textContent = words;
       for (const kind of ready ? preset.kinds : []) {
         const file = await fileOf(model, this.#session.scale, kind);
         if (signal.aborted) return;
         this.#files.append(this.#row(kind, file, `${this.#outcome?.scan.file}-${name}.${kind.options.format}`));
       }
-      this.#words.textContent = words;
     } catch (error) {
       if (signal.aborted) return;
       this.#reset();
