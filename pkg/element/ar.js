@@ -2,82 +2,77 @@
  * What is shown, in the room around the visitor: Scene Viewer on Android, which fetches the GLB itself, and Quick Look on iPhone and iPad,
  * which takes a USDZ file. The button is there only where one of them is.
  */
-import { Posed } from './posed.js';
-
-/** What `src` holds, once it is there. */
-export const SOURCE = Symbol('source');
+import { SOURCE } from './room.js';
 
 const MODES = 'webxr scene-viewer quick-look';
 /** Where Scene Viewer sends those back who do not have it. */
 const FAILED = '#point-weave-no-ar';
 
-export class InRoom extends Posed {
-  /** @type {import('./source.js').Glb | import('./source.js').Scan | undefined} */
-  [SOURCE];
+export class Ar {
+  /** The element. */
+  #host;
+  #box;
   /** The address of a USDZ file that was made, and of what. @type {{ of: unknown, href: string } | undefined} */
   #made;
 
-  /** Whether this device can show it in the room. */
-  get canActivateAR() {
-    return this.#mode !== null;
+  /** @param {import('./room.js').InRoom} host */
+  constructor(host) {
+    this.#host = host;
+    this.#box = /** @type {HTMLElement} */ (host.shadowRoot?.querySelector('.ar'));
+    this.#box.addEventListener('click', () => this.open());
   }
 
   /** Shows it in the room, where a visitor has just clicked. */
-  async activateAR() {
-    const mode = this.#mode;
-    const button = this.#box?.querySelector('button');
-    if (!mode || button?.disabled) return;
+  async open() {
+    const { mode } = this;
+    const button = /** @type {HTMLButtonElement} */ (this.#box.querySelector('button'));
+    if (!mode || button.disabled) return;
+    button.disabled = true;
     try {
-      if (button) button.disabled = true;
       if (mode === 'scene-viewer') this.#openSceneViewer();
       else await this.#openQuickLook();
     } catch {
       this.#fail();
     } finally {
-      if (button) button.disabled = false;
+      button.disabled = false;
     }
   }
 
   /** Shows the button, or hides it. */
-  offerAr() {
-    const box = this.#box;
-    if (!box) return;
-    box.hidden = !this.canActivateAR;
-    box.onclick = () => this.activateAR();
+  offer() {
+    this.#box.hidden = !this.mode;
     if (this.#made && this.#made.of !== this.#subject) this.#drop();
-  }
-
-  get #box() {
-    return /** @type {HTMLElement | null} */ (this.shadowRoot?.querySelector('.ar') ?? null);
   }
 
   /** What there is to show: a GLB, or the mesh of a scan. */
   get #subject() {
-    const source = this[SOURCE];
+    const source = this.#host[SOURCE];
     return source?.kind === 'glb' ? source : source?.mesh;
   }
 
-  /** @returns {'scene-viewer' | 'quick-look' | null} */
-  get #mode() {
-    if (!this.ar || !this.src) return null;
-    const wanted = (this.arModes || MODES).split(/\s+/);
+  /** How it is shown on this device; null where it cannot be. @returns {'scene-viewer' | 'quick-look' | null} */
+  get mode() {
+    const { ar, src, arModes, iosSrc } = this.#host;
+    if (!ar || !src) return null;
+    const wanted = (arModes || MODES).split(/\s+/);
     const can = {
-      'scene-viewer': isAndroid() && this[SOURCE]?.kind === 'glb',
-      'quick-look': hasQuickLook() && Boolean(this.iosSrc || this.#subject),
+      'scene-viewer': isAndroid() && this.#host[SOURCE]?.kind === 'glb',
+      'quick-look': hasQuickLook() && Boolean(iosSrc || this.#subject),
     };
     const found = /** @type {(keyof typeof can)[]} */ (wanted).find((mode) => can[mode]);
     // As model-viewer has it: a file for iOS goes before the list.
-    return found ?? (this.iosSrc && can['quick-look'] ? 'quick-look' : null);
+    return found ?? (iosSrc && can['quick-look'] ? 'quick-look' : null);
   }
 
   #openSceneViewer() {
-    const model = new URL(this.src, document.baseURI);
+    const { src, arScale, arPlacement } = this.#host;
+    const model = new URL(src, document.baseURI);
     model.hash = '';
     const params = new URLSearchParams(model.search);
     params.set('mode', 'ar_preferred');
     if (!params.has('disable_occlusion')) params.set('disable_occlusion', 'true');
-    if (this.arScale === 'fixed') params.set('resizable', 'false');
-    if (this.arPlacement === 'wall') params.set('enable_vertical_placement', 'true');
+    if (arScale === 'fixed') params.set('resizable', 'false');
+    if (arPlacement === 'wall') params.set('enable_vertical_placement', 'true');
     const back = new URL(location.href);
     back.hash = FAILED;
     addEventListener('hashchange', () => {
@@ -90,16 +85,17 @@ export class InRoom extends Posed {
   }
 
   async #openQuickLook() {
-    const file = new URL(this.iosSrc || (await this.#usdz()), document.baseURI);
-    if (this.arScale === 'fixed') file.hash += `${file.hash ? '&' : ''}allowsContentScaling=0`;
-    this.#follow(file.href, { rel: 'ar', ...(!this.iosSrc && { download: 'model.usdz' }) });
+    const { iosSrc, arScale } = this.#host;
+    const file = new URL(iosSrc || (await this.#usdz()), document.baseURI);
+    if (arScale === 'fixed') file.hash += `${file.hash ? '&' : ''}allowsContentScaling=0`;
+    this.#follow(file.href, { rel: 'ar', ...(!iosSrc && { download: 'model.usdz' }) });
   }
 
   /** The address of a file with what is shown, made once. */
   async #usdz() {
     const subject = /** @type {import('./source.js').Glb | import('../types.js').SurfaceMesh} */ (this.#subject);
     if (this.#made?.of === subject) return this.#made.href;
-    const { wasmUrl, workerUrl } = /** @type {typeof import('./element.js').PointWeaveElement} */ (this.constructor);
+    const { wasmUrl, workerUrl } = /** @type {typeof import('./element.js').PointWeaveElement} */ (this.#host.constructor);
     const { usdzOf } = await import('./usdz.js');
     const blob = new Blob([await usdzOf(subject, { threads: 1, wasmUrl, workerUrl })], { type: 'model/vnd.usdz+zip' });
     this.#drop();
@@ -111,7 +107,7 @@ export class InRoom extends Posed {
   #follow(href, more) {
     const link = Object.assign(document.createElement('a'), { href, hidden: true, ...more });
     link.append(document.createElement('img'));
-    this.shadowRoot?.append(link);
+    this.#host.shadowRoot?.append(link);
     link.click();
     link.remove();
   }
@@ -122,7 +118,7 @@ export class InRoom extends Posed {
   }
 
   #fail() {
-    this.dispatchEvent(new CustomEvent('ar-status', { detail: { status: 'failed' } }));
+    this.#host.dispatchEvent(new CustomEvent('ar-status', { detail: { status: 'failed' } }));
   }
 }
 

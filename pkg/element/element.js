@@ -2,7 +2,6 @@
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { listenToKeys } from '../viewer/keyboard.js';
 import { calm, inSight } from '../viewer/watching.js';
-import { InRoom, SOURCE } from './ar.js';
 import { nextLoad } from './awaited.js';
 import { describe, setOrRemove } from './described.js';
 import { Hotspots } from './hotspots.js';
@@ -11,6 +10,7 @@ import { Panels } from './panels.js';
 import { VIEWS, buildParts } from './parts.js';
 import { VIEWER } from './posed.js';
 import { Prompt } from './prompt.js';
+import { InRoom, SOURCE } from './room.js';
 import { isNamedGlb, openSource, wishOf } from './source.js';
 import { Speech } from './speech.js';
 import { AR, CAMERA, LIGHT } from './switching.js';
