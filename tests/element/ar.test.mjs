@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { reconstruct, sample, write } from 'pointweave';
+import { decodePng } from '../page/pictures.mjs';
 import { ball, boxScan, glb } from './files.mjs';
 import { startSite, test } from './site.mjs';
 
@@ -43,6 +44,9 @@ const button = ({ page }) => page.locator('point-weave').getByRole('button', { n
 test('Android opens Scene Viewer with the GLB, and says when there is none', async () => {
   const shown = await site.open('<point-weave src="/duck.glb?title=Duck#there" ar ar-scale="fixed" ar-placement="wall"></point-weave>', { userAgent: ANDROID, prepare: noted });
   await shown.loaded();
+  const { data } = decodePng(await shown.picture());
+  const yellow = Array.from({ length: data.length / 4 }, (_, i) => data.subarray(4 * i, 4 * i + 3)).filter(([r, g, b]) => r > 170 && g > 130 && b < 120);
+  assert.ok(yellow.length > 5000, `the picture on it is shown: ${yellow.length} yellow pixels`);
   const { href, rel } = await opened(shown);
   const [, params, intent] = /^intent:\/\/arvr\.google\.com\/scene-viewer\/1\.2\?(.*)#Intent;(.*)end;$/.exec(href);
   const found = Object.fromEntries(new URLSearchParams(params));
