@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
+import { validateBytes } from 'gltf-validator';
 import { PATIENCE, start } from './browser.mjs';
 import { spherePoints, toXyz } from './scans.mjs';
 
@@ -31,6 +32,9 @@ test('a model is made when a purpose is chosen, shown beside the scan, and saved
   const { extensionsRequired, images, materials } = JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
   assert.deepEqual(extensionsRequired.sort(), ['EXT_meshopt_compression', 'EXT_texture_webp', 'KHR_mesh_quantization']);
   assert.deepEqual([images.length, images[0].mimeType, 'normalTexture' in materials[0]], [1, 'image/webp', true]);
+
+  const { issues } = await validateBytes(new Uint8Array(bytes));
+  assert.deepEqual(issues.messages.filter(({ severity }) => severity < 2), []);
 
   assert.match(await choose('print'), /^Watertight, ready for 3D printing/);
   assert.equal((await save('STL')).name, 'ball-print.stl');

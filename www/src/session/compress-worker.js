@@ -27,14 +27,32 @@ async function packed(glb) {
     const png = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (texture.getImage())], { type: texture.getMimeType() });
     const image = await createImageBitmap(png, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
     const canvas = new OffscreenCanvas(image.width, image.height);
-    /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d')).drawImage(image, 0, 0);
+    /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d', { alpha: false })).drawImage(image, 0, 0);
     image.close();
     let file = await canvas.convertToBlob({ type: 'image/webp', quality: QUALITY });
     if (file.type === 'image/webp') document.createExtension(EXTTextureWebP).setRequired(true);
     else file = await canvas.convertToBlob({ type: 'image/jpeg', quality: QUALITY });
-    texture.setImage(new Uint8Array(await file.arrayBuffer())).setMimeType(file.type);
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    texture.setImage(file.type === 'image/webp' ? bare(bytes) : bytes).setMimeType(file.type);
   }
   return io.writeBinary(document);
+}
+
+/** A WebP file with its picture alone, without the colour profile that browsers put beside it. @param {Uint8Array<ArrayBuffer>} file */
+function bare(file) {
+  const view = new DataView(file.buffer);
+  for (let at = 12; at + 8 <= file.length;) {
+    const end = at + 8 + 2 * Math.ceil(view.getUint32(at + 4, true) / 2);
+    if (/^VP8[ L]$/.test(String.fromCharCode(...file.subarray(at, at + 4)))) {
+      const out = new Uint8Array(12 + end - at);
+      out.set(file.subarray(0, 12));
+      out.set(file.subarray(at, end), 12);
+      new DataView(out.buffer).setUint32(4, out.length - 8, true);
+      return out;
+    }
+    at = end;
+  }
+  return file;
 }
 
 /** The same without compression. @param {Uint8Array} glb */
