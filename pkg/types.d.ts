@@ -127,6 +127,19 @@ export interface SimplifyOptions {
   error?: number;
 }
 
+/** How a poster is drawn. */
+export interface PosterOptions {
+  /** Width and height in pixels, 16 to 4096. Default `[800, 600]`. */
+  size?: [number, number];
+  /**
+   * From where, as `camera-orbit` of the element: an angle around the upright axis, one down from straight above (`deg` or `rad`), and
+   * a distance (`%` of that at which it reaches to the edges, or `m`), each `auto` where it is the default: `'30deg 75deg 110%'`.
+   */
+  camera?: string;
+  /** `'#rrggbb'`, or `'transparent'` (default). */
+  background?: string;
+}
+
 /** A mesh with fewer triangles: what it had, and in its report what that cost. */
 export type Simplified<T> = T & { report: LightCounts & { simplified: LightReport } };
 
@@ -404,6 +417,11 @@ export interface Engine {
    * one; they keep normals, colours and attributes. In a mesh of `reconstruct`, the cloud and the report stay, but for its counts.
    */
   simplify<T extends TriangleMesh>(mesh: T, options: SimplifyOptions & CallOptions): Promise<Simplified<T>>;
+  /**
+   * A picture as `<point-weave>` shows it, drawn without a browser: a mesh as its GLB file, with its pictures or the colours of its
+   * vertices, a cloud as a scan. The same bytes everywhere.
+   */
+  poster(what: PointCloud | TriangleMesh, options?: PosterOptions & CallOptions): Promise<Texture>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & PrepareOption & CallOptions): Promise<ReducedCloud<P>>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & TextureOption & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
@@ -422,6 +440,7 @@ export interface Engine {
 
 export const prepare: Engine['prepare'];
 export const simplify: Engine['simplify'];
+export const poster: Engine['poster'];
 export const reduce: Engine['reduce'];
 export const reconstruct: Engine['reconstruct'];
 export const inspect: Engine['inspect'];

@@ -11,6 +11,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
+import { posterArguments, posterOf } from './posing.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf, split } from './preparing.js';
 import { readScan } from '../files/archive.js';
@@ -144,6 +145,13 @@ export class Engine {
     const { own, transfer, ...watch } = this.#check('simplify', options);
     const args = [meshArgument(mesh, transfer), own];
     return lightened(mesh, await this.#runIn('light', { call: 'simplify', args }, watch));
+  }
+
+  /** @param {PointCloud | import('../types.js').TriangleMesh} what @param {import('../types.js').PosterOptions & CallOptions} [options] */
+  async poster(what, options) {
+    const { own, transfer, ...watch } = this.#check('poster', options);
+    const args = posterArguments(what, own, transfer);
+    return posterOf(await this.#runIn('light', { call: 'poster', args }, watch), args[1]);
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */

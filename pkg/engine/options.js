@@ -4,6 +4,7 @@
  */
 import { AXES, UNITS, isDirection } from './axes.js';
 import * as TABLE from './options-table.js';
+import { colorOf, orbitOf } from './posing.js';
 import { RECIPE } from './preparing.js';
 import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
 
@@ -52,6 +53,13 @@ const TEXTURE = {
   maps: rule(`an array of ${MAPS.map((name) => `'${name}'`).join(' and ')}`, (value) => Array.isArray(value) && value.every((name) => MAPS.includes(name))),
 };
 
+const side = integer(16, 4096);
+const POSTER = {
+  size: rule('a width and a height, integers from 16 to 4096', (value) => Array.isArray(value) && value.length === 2 && value.every((n) => side.accepts(n, ''))),
+  camera: rule("'theta phi radius', each auto or with its unit: deg or rad, deg or rad, and % or m", (value) => orbitOf(value) !== undefined),
+  background: rule("'transparent' or '#rrggbb'", (value) => value === 'transparent' || (typeof value === 'string' && colorOf(value) !== undefined)),
+};
+
 const MODEL = choice('duck', 'pig', 'part', 'desk');
 
 const SAMPLE = {
@@ -87,7 +95,7 @@ const FIRST = { prepare: RECIPE };
 const LAST = { texture: nested('texture', TEXTURE) };
 
 /** The command line has its flags from here. */
-export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: TEXTURE, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: TEXTURE, poster: POSTER, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.
