@@ -6,6 +6,7 @@ import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { LIGHT } from './formats.js';
+import { say } from './say.js';
 import { bytesOf, skinOf } from './skin.js';
 import { stepsOf } from './prepare-flags.js';
 import { doubtLines, infoLines, lightLine, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
@@ -202,9 +203,4 @@ function errorEntry(error) {
 /** @param {Uint8Array} bytes @returns {Promise<void>} */
 function print(bytes) {
   return new Promise((resolve, reject) => process.stdout.write(bytes, (error) => (error ? reject(error) : resolve())));
-}
-
-/** @param {string} line */
-export function say(line) {
-  process.stderr.write(`pointweave: ${line}\n`);
 }
