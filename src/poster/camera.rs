@@ -1,6 +1,6 @@
 //! Where one looks from, and how far away: as `pkg/viewer/look.js` and `orbit.js` have it.
 
-use super::SAMPLES;
+use super::strip::SAMPLES;
 use crate::base::error::{Error, Result};
 use glam::{DMat3, DVec3};
 

@@ -1,9 +1,8 @@
 //! Clouds: round dots as wide as they cover the surface, and eye-dome lighting (C. Boucheny, 2009), as `pkg/viewer/materials.js` and
 //! `eye-dome.js` have them.
 
-use super::SAMPLES;
 use super::camera::Camera;
-use super::strip::{NOTHING, Strip};
+use super::strip::{NOTHING, SAMPLES, Strip};
 use glam::DVec3;
 
 /// Of points without colours.

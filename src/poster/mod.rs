@@ -1,6 +1,6 @@
 //! A picture of a cloud or a mesh, as `<point-weave>` shows it, made without a browser.
 //!
-//! 1. [`Standing`](camera) turns what is up upwards, and `camera` looks from the default or from where it is asked, from as far as
+//! 1. `camera` turns what is up upwards, and looks from the default or from where it is asked, from as far as
 //!    everything is seen.
 //! 2. `triangles`, or `dots`: for each sample of the picture, nine a pixel, what is nearest there.
 //! 3. Of a mesh `surface` lights what is seen, once a pixel and triangle: base colour and normal out of `picture`s, or of the vertices,
@@ -20,6 +20,7 @@
 mod camera;
 mod dots;
 mod picture;
+mod scene;
 mod strip;
 mod studio;
 mod surface;
@@ -29,38 +30,16 @@ use crate::base::error::{Error, Result};
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
 use camera::Camera;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use strip::Strip;
 
 pub use camera::{Reach, View};
+pub use scene::Scene;
 
 /// Sides of a picture, in pixels.
 const SIZES: [usize; 2] = [16, 4096];
-/// Samples of a pixel along each axis.
-const SAMPLES: usize = 3;
 /// Rows of pixels that are made at once.
 const STRIP: usize = 64;
-
-/// What is shown.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Scene<'a> {
-    /// In the unit frame.
-    pub points: &'a [Vec3],
-    /// The points are the vertices of these; a cloud without.
-    pub triangles: Option<&'a [[u32; 3]]>,
-    /// One a vertex; default: from the triangles. Those of clouds are not looked at.
-    pub normals: Option<&'a [Vec3]>,
-    /// One a point.
-    pub colors: Option<&'a [[u8; 3]]>,
-    /// Places in the pictures, one a vertex, 0 to 1.
-    pub uvs: Option<&'a [[f32; 2]]>,
-    /// One a vertex, with the sign of the bitangent; without them the picture of normals is not used.
-    pub tangents: Option<&'a [[f32; 4]]>,
-    /// A PNG file of base colours.
-    pub color: Option<&'a [u8]>,
-    /// A PNG file of normals in tangent space.
-    pub normal: Option<&'a [u8]>,
-}
 
 /// How it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,7 +87,7 @@ pub fn poster(
             &format!("{width} x {height}"),
         ));
     }
-    check(scene)?;
+    scene.check()?;
     let stand = camera::standing(params.up);
     let points: Vec<DVec3> = scene.points.iter().map(|p| stand * p.as_dvec3()).collect();
     let camera = Camera::new(&params.view, &points, [width, height])?;
@@ -146,36 +125,4 @@ pub fn poster(
         },
     )?;
     picture::encode(&rows.concat(), params.size, params.background.is_none())
-}
-
-/// Every list has one entry a point, and every corner is a point.
-fn check(scene: &Scene) -> Result<()> {
-    let points = scene.points.len();
-    if points == 0 {
-        return Err(Error::EmptyCloud);
-    }
-    let lengths = [
-        ("normals", scene.normals.map(<[Vec3]>::len)),
-        ("colors", scene.colors.map(<[[u8; 3]]>::len)),
-        ("uvs", scene.uvs.map(<[[f32; 2]]>::len)),
-        ("tangents", scene.tangents.map(<[[f32; 4]]>::len)),
-    ];
-    for (array, length) in lengths {
-        if let Some(found) = length.filter(|&length| length != points) {
-            return Err(Error::BadLength {
-                array: array.into(),
-                expected: format!("{points} (one a point)"),
-                found,
-            });
-        }
-    }
-    let corners = scene.triangles.unwrap_or_default().as_flattened();
-    match corners.iter().position(|&corner| corner as usize >= points) {
-        None => Ok(()),
-        Some(index) => Err(Error::BadIndex {
-            index,
-            points,
-            found: corners[index],
-        }),
-    }
 }

@@ -1,7 +1,9 @@
 //! Some rows of a picture: what is nearest at each sample, and which colour it has.
 
-use super::SAMPLES;
 use std::ops::Range;
+
+/// Samples of a pixel along each axis.
+pub(super) const SAMPLES: usize = 3;
 
 /// Nothing is there.
 pub(super) const NOTHING: u32 = u32::MAX;

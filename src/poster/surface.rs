@@ -1,9 +1,9 @@
 //! The light on a mesh: the material that `write` gives GLB files, as three.js shows it in the neutral studio.
 
-use super::SAMPLES;
-use super::Scene;
 use super::camera::Camera;
 use super::picture::Mipmaps;
+use super::scene::Scene;
+use super::strip::SAMPLES;
 use super::studio::Studio;
 use super::triangles::Placed;
 use glam::{DMat3, DVec3};
