@@ -11,13 +11,13 @@ const STYLE = `
   input { font: inherit; padding: .35rem .7rem; border: 1px solid var(--line); border-radius: 8px; min-width: 16rem }
   p { margin: .15rem 0; color: var(--soft); font-size: .86rem; overflow-wrap: anywhere }
   .bad { color: var(--bad) } .doubt { color: var(--doubt) }
-  ul { display: grid; grid-template-columns: repeat(auto-fill, minmax(var(--least), 1fr)); gap: 1.2rem; margin: 0; padding: 0; list-style: none }
-  li { border: 1px solid var(--line); border-radius: 12px; overflow: hidden } li > div { padding: .6rem .8rem .8rem }
+  ul { display: grid; align-items: start; grid-template-columns: repeat(auto-fill, minmax(var(--least), 1fr)); gap: 1.2rem; margin: 0; padding: 0; list-style: none }
+  li { border: 1px solid var(--line); border-radius: 12px; overflow: clip } li > div { padding: .6rem .8rem .8rem }
   li.failed { border: 3px solid var(--bad) } li.doubtful { border-color: var(--doubt) }
   point-weave, .none { display: block; inline-size: 100%; aspect-ratio: 4 / 3; border-radius: 0 }
   .none { display: grid; place-items: center; color: var(--bad); font-size: 1.1rem; background: light-dark(#f6e9e7, #3b2422) }
   img { display: block; width: 100%; height: auto; background: light-dark(#eef1f0, #23292e) }
-  dl { display: grid; grid-template-columns: auto 1fr; gap: 0 .7rem; margin: .3rem 0 0; font-size: .82rem } dt { color: var(--soft) } dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums }`;
+  dl { display: grid; grid-template-columns: auto 1fr; gap: 0 .7rem; margin: .3rem 0 0; font-size: .82rem } dt { color: var(--soft) } dd { margin: 0; text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums }`;
 
 /** Shows what has all words that are looked for. */
 const SEARCH = `
@@ -56,13 +56,13 @@ export function contactPage(title, entries) {
     const { points, scanBytes, triangles, bytes, rms, lost, doubts, seconds, format } = entry.made;
     const rows = [
       ['scan', `${format}, ${size(scanBytes)}`], ['points', whole(points)], ['triangles', whole(triangles)], ['model', size(bytes)],
-      ['points off, rms', percent(rms)], ['lost by fewer triangles, at most', percent(lost)], ['time', `${seconds.toFixed(1)} s`],
+      ['points off, rms', percent(rms)], ['triangles cost', percent(lost)], ['time', `${seconds.toFixed(1)} s`],
     ];
     const list = rows.map(([term, value]) => `<dt>${term}</dt><dd>${safe(value)}</dd>`).join('');
     return item(entry, `<img src="${name}/poster.png" alt="" width="800" height="600" loading="lazy"><div><h2>${safe(source)}</h2><dl>${list}</dl>${doubtful(doubts)}</div>`);
   });
   const [failed, doubts] = [0, 1].map((kind) => entries.filter((entry) => order(entry) === kind).length);
-  const head = `<p>${entries.length} scans, <span class="${failed ? 'bad' : ''}">${failed} failed</span>, <span class="${doubts ? 'doubt' : ''}">${doubts} doubtful</span>. Distances in % of the diagonal.</p> <a href="index.html">Models</a>`;
+  const head = `<p>${entries.length} scans, <span class="${failed ? 'bad' : ''}">${failed} failed</span>, <span class="${doubts ? 'doubt' : ''}">${doubts} doubtful</span>. Points off: how far points are from the surface. Triangles cost: how far the model is from the full mesh, at most. Both in % of the diagonal.</p> <a href="index.html">Models</a>`;
   return page(`${title}: contact sheet`, head, cards, '200px', '');
 }
 
@@ -98,13 +98,13 @@ function item(entry, content) {
 
 /** @param {string[]} doubts */
 function doubtful(doubts) {
-  return doubts.map((doubt) => `<p class="doubt">${safe(doubt)}</p>`).join('');
+  return doubts.map((doubt) => `<p class="doubt">${safe(doubt.replace(/^doubtful: /, ''))}</p>`).join('');
 }
 
 /** @param {number} count */
 const whole = (count) => count.toLocaleString('en-US');
 /** @param {number} share */
-const percent = (share) => `${Number((100 * share).toPrecision(2))} %`;
+const percent = (share) => (share > 0 && share < 1e-5 ? '< 0.001 %' : `${Number((100 * share).toPrecision(2))} %`);
 /** @param {number} bytes */
 const size = (bytes) => (bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
 

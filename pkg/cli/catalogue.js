@@ -74,9 +74,9 @@ export async function catalogue(task, { sources, site, jobs, title }, signal) {
           entry = { ...told, error: { code: codeOf(error), message: sentence(error) } };
         }
         entries.set(scan.name, entry);
-        say(`${++done}/${count} ${lineOf(entry)}`);
         last = last.then(save);
         await last;
+        say(`${++done}/${count} ${lineOf(entry)}`);
       }
     } finally {
       await engine.dispose();
@@ -96,8 +96,7 @@ function tell({ json }, site, all, made) {
   const failed = all.filter((entry) => 'error' in entry);
   if (json) process.stdout.write(`${JSON.stringify(all, null, 2)}\n`);
   if (made === 0) failed.forEach((entry) => say(lineOf(entry)));
-  const did = made === 0 ? 'nothing to do' : `${made} made`;
-  say(`${site}: ${did}, ${all.length - made} unchanged, ${failed.length} of ${all.length} failed`);
+  say(`${site}: ${made === 0 ? `nothing to do, ${failed.length} of ${all.length} failed` : `${made} of ${all.length} made, ${failed.length} failed`}`);
   return failed.length === 0;
 }
 
