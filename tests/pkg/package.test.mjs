@@ -130,16 +130,21 @@ test('the element in one file is not larger than its budget, and names nothing t
   }
 });
 
-/** Most bytes of each part, gzipped. */
-const BUDGET = { single: 384_000, threads: 428_000, files: 186_500, las: 120_000, e57: 146_000, packed: 250_000, pictures: 174_000, exports: 219_000, prepare: 177_500, light: 262_000, samples: 40_000, script: 20_600 };
+/** Most bytes of each part, gzipped: about one per cent more than it has. */
+const BUDGET = {
+  single: 386_000, threads: 431_000, files: 188_000, las: 121_000, e57: 148_000, packed: 252_000, pictures: 174_000,
+  exports: 220_000, prepare: 178_000, light: 262_000, samples: 44_000, script: 21_000,
+};
 
 test('nothing is larger than its budget', async () => {
   const zipped = (bytes) => gzipSync(bytes, { level: 9 }).length;
   const { script, ...wasm } = BUDGET;
+  const tooLarge = [];
   for (const [name, most] of Object.entries(wasm)) {
     const bytes = zipped(await readFile(new URL(`wasm/${name}/pointweave_bg.wasm`, PACKAGE)));
-    assert.ok(bytes <= most, `${name}: ${bytes} bytes`);
+    if (bytes > most) tooLarge.push(`${name}: ${bytes} bytes`);
   }
+  assert.deepEqual(tooLarge, []);
   const { outputFiles } = await build({
     entryPoints: [path('index.js'), path('worker.js')], outdir: 'out',
     bundle: true, minify: true, splitting: true, format: 'esm', write: false, logLevel: 'silent',

@@ -310,12 +310,7 @@ fn node_file(folder: &str, file: &str, name: Option<&str>) -> Result<()> {
 fn node(files: &[PathBuf], name: Option<&str>, in_browsers: bool) -> Result<()> {
     packages::npm(&root().join("tests"))?;
     let mut tests = command("node");
-    tests.args(["--test", "--test-reporter=spec"]);
-    // Files of the page count frames and memory, and are alone.
-    let page = root().join("tests/page");
-    if !files.iter().any(|file| file.starts_with(&page)) {
-        tests.arg("--test-concurrency=2");
-    }
+    tests.args(["--test", "--test-reporter=spec", "--test-concurrency=2"]);
     if in_browsers {
         tests.env("CHROMIUM", browsers::chromium()?);
         tests.env("FIREFOX", browsers::firefox()?);
