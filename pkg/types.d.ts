@@ -166,6 +166,8 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   tangents?: Float32Array;
   /** With `texture`. */
   textures?: Partial<Record<'color' | 'normal', Texture>>;
+  /** With `lods`: the meshes of the other budgets. */
+  lods?: SurfaceMesh<Positions>[];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -192,6 +194,11 @@ export interface Texture {
 
 /** Of a reconstruction: pictures of what the points show, so that a mesh of few triangles looks like one of many. */
 export interface TextureOption {
+  /**
+   * Instead of `triangles`: several meshes, of at most so many triangles each, the first with the most. The result is the first, and has
+   * the others as `lods`. 1 to 8 numbers, each less than the one before.
+   */
+  lods?: number[];
   texture?: {
     /** Width in texels, 64 to 8192; the height is what the charts need. Default: two texels a point along each axis, 256 to 4096. */
     size?: number;
@@ -332,7 +339,9 @@ export type OutputFormat =
    * USDZ, one layer as text: everything. Positions are in single precision, and the origin is a translation in double precision. y is
    * up, and the unit is the metre, where the cloud says its own. Colours are linear, attributes primvars.
    */
-  | 'usdz';
+  | 'usdz'
+  /** An OBJ file with its material library and its pictures. */
+  | 'zip';
 
 export interface WriteOptions {
   /** Default `'ply'`. */

@@ -36,8 +36,8 @@ import { UsageError } from './usage.js';
  * @property {import('./catalogue-flags.js').CatalogueSaid} [catalogue] of a catalogue
  */
 
-/** The format that a flag is for, and no other. */
-const ONLY = { encoding: 'ply', quantize: 'glb', meshopt: 'glb', texture: 'glb' };
+/** The formats that a flag is for, and no others. */
+const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'zip'] };
 
 /** @type {Command[]} */
 export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify', 'poster', 'catalogue'];
@@ -136,6 +136,7 @@ function task(command, values, inputs) {
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
   checkKind({ ...write, texture: own.texture }, format);
+  if (own.lods && out === '-') throw new UsageError('--lods makes several files: -o FILE names the first');
   if (command === 'merge') return { ...shared, jobs: [oneOf(inputs, out, shared.json)], format };
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
@@ -153,7 +154,7 @@ function formatFor(command, { out, format }) {
 /** @param {Record<string, any>} write @param {string} format */
 function checkKind(write, format) {
   for (const [name, only] of Object.entries(ONLY)) {
-    if (write[name] && format !== only) throw new UsageError(`--${name} is for ${only.toUpperCase()} files`);
+    if (write[name] && !only.includes(format)) throw new UsageError(`--${name} is for ${only.map((other) => other.toUpperCase()).join(' and ')} files`);
   }
 }
 

@@ -5,7 +5,7 @@ import { frameOf } from '../viewer/frame.js';
 import { likelyUp } from '../viewer/upright.js';
 import { direction } from '../engine/axes.js';
 import { withSaid } from './cloud-flags.js';
-import { besideOf, openInput, writeOutput } from './files.js';
+import { besideOf, levelName, openInput, writeOutput } from './files.js';
 import { doubtLines, reasonLines } from './report-text.js';
 
 /** @import { Engine, StepReport, SurfaceReport } from '../types.js' */
@@ -49,6 +49,9 @@ export async function make(engine, { read, own, cloud: said, steps }, path, fold
   const prepare = steps.length > 0 ? { prepare: steps } : {};
   const mesh = await engine.reconstruct({ ...scan, up }, { ...own, ...prepare, signal, transfer: true });
   const model = await engine.write(mesh, { format: 'glb', quantize: true, signal });
+  /** @type {Record<string, Uint8Array>} */
+  const levels = {};
+  for (const [i, level] of (mesh.lods ?? []).entries()) levels[levelName('model.glb', i + 1)] = await engine.write(level, { format: 'glb', quantize: true, signal });
   const poster = await engine.poster(mesh, { size: POSTER, signal });
   /** @type {SurfaceReport} */
   const report = mesh.report;
@@ -57,7 +60,7 @@ export async function make(engine, { read, own, cloud: said, steps }, path, fold
   const doubts = [...reasonLines(told), ...doubtLines(report)];
   const seconds = (performance.now() - start) / 1000;
   const whole = { source: basename(path), file, model: { bytes: model.length, triangles: report.triangles }, doubts, steps: told, report, seconds };
-  const files = { 'model.glb': model, 'poster.png': poster.data, 'report.json': new TextEncoder().encode(`${JSON.stringify(whole, null, 2)}\n`) };
+  const files = { 'model.glb': model, ...levels, 'poster.png': poster.data, 'report.json': new TextEncoder().encode(`${JSON.stringify(whole, null, 2)}\n`) };
   for (const [name, bytes] of Object.entries(files)) await writeOutput(join(folder, name), bytes, signal);
   return {
     files: Object.keys(files),

@@ -41,10 +41,11 @@ export async function catalogue(task, { sources, site, jobs, title }, signal) {
   if (scans.length === 0) throw new UsageError(`there are no scans in ${sources.join(', ')}`);
   await makeFolder(site);
   const before = await manifestOf(site);
-  const whole = { ...task, own: { ...DEFAULTS, ...task.own }, steps };
+  const whole = { ...task, own: { ...(task.own.lods ? { texture: DEFAULTS.texture } : DEFAULTS), ...task.own }, steps };
   const options = JSON.stringify([await version(), whole.own, task.read, task.cloud, steps]);
   /** @type {Map<string, Entry>} */
   const entries = new Map();
+  /** @type {(Source & { key: string })[]} */
   const waiting = [];
   for (const scan of scans) {
     signal.throwIfAborted();

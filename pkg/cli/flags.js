@@ -1,7 +1,7 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
 import { PointweaveError } from '../engine/errors.js';
 import { TARGETS } from '../engine/options-table.js';
-import { MAPS, TABLES } from '../engine/options.js';
+import { LODS, MAPS, TABLES } from '../engine/options.js';
 import { rule } from '../engine/rules.js';
 import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
@@ -23,9 +23,10 @@ import { UsageError } from './usage.js';
 export const WORDS = {
   ...FLAGS,
   faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
-  texture: 'pictures of the points on the mesh, so many texels wide; for GLB files',
+  texture: 'pictures of the points on the mesh, so many texels wide; for GLB and ZIP files',
   maps: 'which pictures',
   error: 'largest distance between the mesh as it was and as it is, a share of the diagonal',
+  lods: 'most triangles of several meshes, instead of --triangles; the second is FILE.lod1.glb',
   size: 'of the picture, in pixels',
   camera: 'from where, as camera-orbit of <point-weave>',
   background: 'behind it: #rrggbb or transparent',
@@ -38,6 +39,9 @@ export const WORDS = {
 
 /** `--texture 2048 --maps color,normal`. */
 const TEXTURES = { texture: TABLES.texture.size, maps: rule(`one of or both of ${MAPS.join(',')}`, (value) => typeof value === 'string' && value.split(',').every((name) => MAPS.includes(name))) };
+
+/** `--lods 50000,10000,2000`. */
+const LEVELS = { lods: rule('1 to 8 numbers apart by commas, each less than the one before', (value, path) => LODS.accepts(numbersIn(value), path)) };
 
 /** `--size 800x600`. */
 const POSTERS = { ...TABLES.poster, size: rule('WIDTHxHEIGHT, each 16 to 4096', (value, path) => TABLES.poster.size.accepts(sizeOf(value), path)) };
@@ -62,7 +66,7 @@ export function flagsOf(command) {
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
-  return [...read, ...reduce, ...(command !== 'reduce' ? [none, ...flags('reconstruct', surface), ...flags('texture', TEXTURES)] : []), ...(command === 'catalogue' ? [] : flags('write', TABLES.write))];
+  return [...read, ...reduce, ...(command !== 'reduce' ? [none, ...flags('reconstruct', surface), ...flags('texture', { ...LEVELS, ...TEXTURES })] : []), ...(command === 'catalogue' ? [] : flags('write', TABLES.write))];
 }
 
 /**
@@ -81,9 +85,14 @@ function flags(group, table) {
   });
 }
 
+/** @param {unknown} text @param {string} [mark] */
+function numbersIn(text, mark = ',') {
+  return String(text).split(mark).map((digits) => (/^\d+$/.test(digits) ? Number(digits) : NaN));
+}
+
 /** @param {unknown} text */
 function sizeOf(text) {
-  return String(text).split('x').map((digits) => (/^\d+$/.test(digits) ? Number(digits) : NaN));
+  return numbersIn(text, 'x');
 }
 
 /** @param {string} key */
@@ -126,10 +135,11 @@ export function optionsFrom(command, values) {
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  const { texture: size, maps } = given.texture;
+  const { texture: size, maps, lods } = given.texture;
+  if (lods !== undefined && given.reconstruct.triangles !== undefined) throw new UsageError('--lods and --triangles exclude each other');
   if (maps !== undefined && size === undefined) throw new UsageError('--maps says which pictures --texture makes');
   const texture = size === undefined ? {} : { texture: { size, ...(maps && { maps: maps.split(',') }) } };
-  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...texture }, read: given.read, write: given.write };
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...(lods !== undefined && { lods: numbersIn(lods) }), ...texture }, read: given.read, write: given.write };
 }
 
 /** @param {Flag} flag @param {Record<string, any>} values */

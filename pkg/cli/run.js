@@ -4,7 +4,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
-import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { besideOf, checkPlace, levelName, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
 import { LIGHT } from './formats.js';
 import { say } from './say.js';
 import { bytesOf, skinOf } from './skin.js';
@@ -122,8 +122,9 @@ async function perform(engine, task, job, watch) {
     return { report: simplified, text: lightLine(simplified), doubts: simplified.reason ? [simplified.reason] : [] };
   }
   const prepare = steps.length > 0 ? { prepare: steps } : {};
-  const result = await engine[command](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
+  const result = await engine[command === 'reduce' ? command : 'reconstruct'](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
   await save(engine, task, output, result, watch);
+  for (const [i, level] of (result.lods ?? []).entries()) await save(engine, task, output && levelName(output, i + 1), level, watch);
   const { report, prepared } = result;
   const before = prepared ? `${stepsLine(prepared.labels.length, prepared.steps)}; ` : '';
   const reasons = prepared ? reasonLines(prepared.steps) : [];
@@ -139,7 +140,7 @@ async function perform(engine, task, job, watch) {
 async function scanOf(engine, { command, read }, input, watch) {
   const name = input === '-' ? undefined : input;
   const file = await openInput(input, watch.signal);
-  const whole = LIGHT.includes(command) && { faces: 'mesh' };
+  const whole = LIGHT.includes(command) && { faces: /** @type {const} */ ('mesh') };
   const cloud = await engine.read(file, { name, beside: besideOf(input), ...whole, ...read, ...watch, transfer: command !== 'poster' });
   if (cloud.positions.length === 0 && cloud.file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(cloud.file.dropped)}, none of them finite` });

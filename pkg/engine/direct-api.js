@@ -81,7 +81,9 @@ function run(core, call, subject, options) {
   signal?.throwIfAborted();
   if (prepare) throw badOption('prepare', "undefined: call prepare before, as it waits for its wasm", prepare);
   if (own.triangles !== undefined) throw badOption('triangles', "undefined: call simplify after, as it waits for its wasm", own.triangles);
-  if (own.texture) throw badOption('texture', 'undefined: only an engine makes textures, as their wasm has to be waited for', own.texture);
+  for (const option of ['texture', 'lods']) {
+    if (own[option]) throw badOption(option, 'undefined: only an engine does it, as its wasm has to be waited for', own[option]);
+  }
   if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
   return signed(runHere(core, { call, args: ARGUMENTS[call](subject, own, transfer) }, { signal, onProgress }), CHOICE);
 }

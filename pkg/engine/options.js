@@ -32,7 +32,7 @@ const READ = {
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz', 'zip'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
   up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },
@@ -44,6 +44,10 @@ const SIMPLIFY = {
   triangles: integer(1, Number.MAX_SAFE_INTEGER),
   error: rule('a number in (0, 1]', (value) => typeof value === 'number' && value > 0 && value <= 1),
 };
+
+/** Budgets of several meshes, each less than the one before. */
+export const LODS = rule('an array of 1 to 8 integers of at least 1, each less than the one before', (value) =>
+  Array.isArray(value) && value.length > 0 && value.length <= 8 && value.every((n, i) => SIMPLIFY.triangles.accepts(n, '') && (i === 0 || n < value[i - 1])));
 
 /** The pictures that a mesh can have. */
 export const MAPS = ['color', 'normal'];
@@ -92,7 +96,7 @@ const CALL = {
 const FIRST = { prepare: RECIPE };
 
 /** Of a reconstruction: what is done to the mesh after. */
-const LAST = { texture: nested('texture', TEXTURE) };
+const LAST = { texture: nested('texture', TEXTURE), lods: LODS };
 
 /** The command line has its flags from here. */
 export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: TEXTURE, poster: POSTER, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
@@ -113,6 +117,7 @@ export function checkOptions(call, options = {}) {
   const table = call === 'reduce' || call === 'reconstruct' ? { ...TABLES[call], ...FIRST, ...(call === 'reconstruct' && LAST), ...CALL } : { ...TABLES[call], ...CALL };
   const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
+  if (own.lods && own.triangles !== undefined) throw badOption('triangles', 'undefined where lods are given', own.triangles);
   if (call === 'simplify' && own.triangles === undefined && own.error === undefined) throw badOption('triangles', 'a number of triangles, or error', undefined);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }
