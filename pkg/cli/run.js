@@ -124,7 +124,7 @@ async function perform(engine, task, job, watch) {
   const prepare = steps.length > 0 ? { prepare: steps } : {};
   const result = await engine[command === 'reduce' ? command : 'reconstruct'](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
   await save(engine, task, output, result, watch);
-  for (const [i, level] of (result.lods ?? []).entries()) await save(engine, task, output && levelName(output, i + 1), level, watch);
+  for (const [i, level] of (('lods' in result && result.lods) || []).entries()) await save(engine, task, output && levelName(output, i + 1), level, watch);
   const { report, prepared } = result;
   const before = prepared ? `${stepsLine(prepared.labels.length, prepared.steps)}; ` : '';
   const reasons = prepared ? reasonLines(prepared.steps) : [];

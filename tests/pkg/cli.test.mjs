@@ -200,8 +200,8 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['scan.ply', '-o', 'mesh.glb'], /'scan\.ply' looks like a file, .*: did you mean pointweave reconstruct scan\.ply -o mesh\.glb\?$/],
     [['--ratio', '0.2', 'scan.ply'], /a command comes before --ratio: reduce, reconstruct, inspect, prepare, merge, simplify, poster or catalogue$/],
     [['reduce', 'scan.ply'], /where should the result go\?/],
-    [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj, pcd, las, laz, usdz$/],
-    [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl, pcd, las, laz, 3mf, usdz$/],
+    [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj, pcd, las, laz, usdz, zip$/],
+    [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl, pcd, las, laz, 3mf, usdz, zip$/],
     [['reduce', 'scan.ply', '-o'], /--out needs a value$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--seed', '-1'], /--seed needs a value; one that begins with - is given as --seed=-…$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--seed=-1'], /--seed is '-1': expected an integer/],
@@ -337,10 +337,10 @@ test('every option of the package is a flag, with a word in the help', async (t)
   for (const key of Object.keys(fitting)) assert.match(surface, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
   const simpler = String((await good(path, ['simplify', '--help'])).stdout);
   for (const key of Object.keys(TABLES.simplify)) assert.match(simpler, new RegExp(`\\n  --${key}\\b`), key);
-  for (const flag of ['texture', 'maps']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
+  for (const flag of ['texture', 'maps', 'lods']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
   const drawn = String((await good(path, ['poster', '--help'])).stdout);
   for (const key of Object.keys(TABLES.poster)) assert.match(drawn, new RegExp(`\\n  --${key}\\b`), key);
-  const made = { ...TABLES.simplify, ...TABLES.poster, texture: {}, maps: {} };
+  const made = { ...TABLES.simplify, ...TABLES.poster, texture: {}, maps: {}, lods: {} };
   assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...made, ...worded, ...writing, up, unit }).sort());
 
   const line = 'reconstruct a.ply -o b.glb --flatness 0.001 --method paper --max-iterations 7 --norm diagonal --curvature-weight 0 ' +

@@ -154,3 +154,26 @@ test('a poster is a picture of a cloud or a mesh, the same by every way; a file 
   assert.deepEqual(await readFile(png), Buffer.from(data));
   await rm(folder, { recursive: true });
 });
+
+test('lods are several meshes of one reconstruction, and several files; a textured one is an archive, too', async () => {
+  const near = await reconstruct(scan, { reduce: false, lods: [500, 200, 60], texture: { size: 64 } });
+  const meshes = [near, ...near.lods];
+  assert.deepEqual(meshes.map(({ report, indices }) => [report.triangles, indices.length / 3].every((n, _, [first]) => n === first)), [true, true, true]);
+  assert.deepEqual(near.indices, (await reconstruct(scan, { reduce: false, triangles: 500, texture: { size: 64 } })).indices);
+  const [most, middle, least] = meshes.map(({ indices }) => indices.length / 3);
+  assert.ok(most <= 500 && middle <= 200 && middle >= 196 && least <= 60, `${most} ${middle} ${least}`);
+  assert.ok(meshes.every(({ textures, uvs, positions }) => textures.color && uvs.length / 2 === positions.length / 3));
+  for (const wrong of [{ lods: [] }, { lods: [100, 200] }, { lods: [100], triangles: 100 }]) await assert.rejects(reconstruct(scan, wrong), { code: 'bad-option' });
+
+  const back = await read(await write(near, { format: 'zip' }), { name: 'model.zip', faces: 'mesh' });
+  assert.deepEqual([back.indices.length, back.positions.length], [near.indices.length, near.positions.length]);
+  const off = back.colors.reduce((sum, value, i) => sum + Math.abs(value - near.colors[i]), 0) / back.colors.length;
+  assert.ok(off < 12, `the picture has the colours of the vertices: ${off}`);
+
+  const folder = await mkdtemp(join(tmpdir(), 'lods-'));
+  await writeFile(join(folder, 'scan.ply'), await write(scan, { format: 'ply' }));
+  await run(process.execPath, [CLI, 'reconstruct', join(folder, 'scan.ply'), '-o', join(folder, 'a.glb'), '--no-reduce', '--lods', '300,100', '--texture', '64']);
+  const counts = await Promise.all(['a.glb', 'a.lod1.glb'].map(async (name) => (await read(await readFile(join(folder, name)), { faces: 'mesh' })).indices.length / 3));
+  assert.ok(counts[0] <= 300 && counts[0] >= 294 && counts[1] <= 100 && counts[1] >= 98, `${counts}`);
+  await rm(folder, { recursive: true });
+});
