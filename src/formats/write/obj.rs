@@ -16,6 +16,7 @@ pub(super) fn write(
     if let Some((_, library)) = material {
         let _ = writeln!(out, "mtllib {library}");
     }
+    let pictured = material.is_some_and(|(skin, _)| skin.color.is_some());
     let double = is_double(cloud);
     for i in 0..cloud.points() {
         out.push('v');
@@ -26,7 +27,9 @@ pub(super) fn write(
                 false => write!(out, " {:?}", x as f32),
             };
         }
-        for &c in triple(&cloud.colors, i) {
+        // Where there is a picture of them, they would be multiplied with it.
+        let colors = if pictured { &None } else { &cloud.colors };
+        for &c in triple(colors, i) {
             let _ = write!(out, " {:.4}", f64::from(c) / 255.0);
         }
         out.push('\n');
