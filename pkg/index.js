@@ -8,4 +8,4 @@ export { flip } from './engine/flip.js';
 export { DEFAULTS } from './engine/options.js';
 export { sideInWords } from './engine/side.js';
 export { splitOrigin } from './files/origin.js';
-export const { createEngine, prepare, simplify, texture, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);
+export const { createEngine, prepare, simplify, texture, poster, reduce, reconstruct, inspect, read, write, sample } = makeApi(platform);

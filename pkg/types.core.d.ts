@@ -1,11 +1,11 @@
 /**
  * The functions of the package without engine, queue and worker: synchronous calls into one single-threaded instance, in the
  * thread that makes them. For whoever has a worker of their own. Files and samples are wasm of their own, which is loaded when they
- * are asked for: `prepare`, `simplify`, `read`, `write` and `sample` wait for it.
+ * are asked for: `prepare`, `simplify`, `poster`, `read`, `write` and `sample` wait for it.
  */
 import type {
-  CallOptions, CloudInfo, EngineOptions, FileCloud, PointCloud, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
-  Prepared, SampleOptions, Simplified, SimplifyOptions, Step, SurfaceMesh, TriangleMesh, WriteOptions, Model,
+  CallOptions, CloudInfo, EngineOptions, FileCloud, PointCloud, PosterOptions, ReadOptions, ReconstructOptions, ReduceOptions, ReducedCloud,
+  Prepared, SampleOptions, Simplified, SimplifyOptions, Step, SurfaceMesh, Texture, TriangleMesh, WriteOptions, Model,
 } from './types.js';
 
 export { DEFAULTS, PointweaveError, autoCount, flip, sideInWords, splitOrigin } from './types.js';
@@ -21,6 +21,7 @@ export interface Core {
   prepare<P extends Float32Array | Float64Array>(cloud: PointCloud<P> | PointCloud<P>[], steps: Step[], options?: CallOptions): Promise<Prepared<P>>;
   /** A reconstruction has no option `triangles`: this comes after it. */
   simplify<T extends TriangleMesh>(mesh: T, options: SimplifyOptions & CallOptions): Promise<Simplified<T>>;
+  poster(what: PointCloud | TriangleMesh, options?: PosterOptions & CallOptions): Promise<Texture>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & CallOptions): ReducedCloud<P>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & CallOptions): SurfaceMesh<P>;
   inspect(cloud: PointCloud, options?: CallOptions): CloudInfo;

@@ -127,6 +127,19 @@ export interface SimplifyOptions {
   error?: number;
 }
 
+/** How a poster is drawn. */
+export interface PosterOptions {
+  /** Width and height in pixels, 16 to 4096. Default `[800, 600]`. */
+  size?: [number, number];
+  /**
+   * From where, as `camera-orbit` of the element: an angle around the upright axis, one down from straight above (`deg` or `rad`), and
+   * a distance (`%` of that at which it reaches to the edges, or `m`), each `auto` where it is the default: `'30deg 75deg 110%'`.
+   */
+  camera?: string;
+  /** `'#rrggbb'`, or `'transparent'` (default). */
+  background?: string;
+}
+
 /** A mesh with fewer triangles: what it had, and in its report what that cost. */
 export type Simplified<T> = T & { report: LightCounts & { simplified: LightReport } };
 
@@ -156,6 +169,8 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   tangents?: Float32Array;
   /** With `texture`. */
   textures?: Partial<Record<'color' | 'normal', Texture>>;
+  /** With `lods`: the meshes of the other budgets. */
+  lods?: SurfaceMesh<Positions>[];
   /** The points that the surface was fitted to. */
   cloud: ReducedCloud<Positions>;
   /** With `distances`, fractions: for a map of the error. */
@@ -182,6 +197,11 @@ export interface Texture {
 
 /** Of a reconstruction: pictures of what the points show, so that a mesh of few triangles looks like one of many. */
 export interface TextureOption {
+  /**
+   * Instead of `triangles`: several meshes, of at most so many triangles each, the first with the most. The result is the first, and has
+   * the others as `lods`. 1 to 8 numbers, each less than the one before.
+   */
+  lods?: number[];
   texture?: TextureOptions;
 }
 
@@ -324,7 +344,9 @@ export type OutputFormat =
    * USDZ, one layer as text: everything. Positions are in single precision, and the origin is a translation in double precision. y is
    * up, and the unit is the metre, where the cloud says its own. Colours are linear, attributes primvars.
    */
-  | 'usdz';
+  | 'usdz'
+  /** An OBJ file with its material library and its pictures. */
+  | 'zip';
 
 export interface WriteOptions {
   /** Default `'ply'`. */
@@ -414,6 +436,11 @@ export interface Engine {
    * with what is lost of the mesh. Both are in the same coordinates, each with its `origin`.
    */
   texture<T extends TriangleMesh>(mesh: T, cloud: PointCloud, options?: TextureOptions & { triangles?: number } & CallOptions): Promise<Textured<T>>;
+  /**
+   * A picture as `<point-weave>` shows it, drawn without a browser: a mesh as its GLB file, with its pictures or the colours of its
+   * vertices, a cloud as a scan. The same bytes everywhere.
+   */
+  poster(what: PointCloud | TriangleMesh, options?: PosterOptions & CallOptions): Promise<Texture>;
   reduce<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReduceOptions & PrepareOption & CallOptions): Promise<ReducedCloud<P>>;
   reconstruct<P extends Float32Array | Float64Array>(cloud: PointCloud<P>, options?: ReconstructOptions & PrepareOption & TextureOption & CallOptions): Promise<SurfaceMesh<P>>;
   /** Looks at a cloud and changes nothing; the only call that accepts coordinates that are not finite. */
@@ -433,6 +460,7 @@ export interface Engine {
 export const prepare: Engine['prepare'];
 export const simplify: Engine['simplify'];
 export const texture: Engine['texture'];
+export const poster: Engine['poster'];
 export const reduce: Engine['reduce'];
 export const reconstruct: Engine['reconstruct'];
 export const inspect: Engine['inspect'];

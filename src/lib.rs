@@ -15,6 +15,7 @@
 //!               └ report      what was lost, measured                 section 5                 ──► report
 //!                 └ light       fewer triangles, where asked for
 //!                   └ texture     colours and normals in pictures
+//!                     └ poster      a picture of it
 //! ```
 //!
 //! [`pipeline`] calls them in this order. Each is a folder (a *wing*) whose `mod.rs` says what the stage does, step by step; all
@@ -63,6 +64,8 @@ pub mod report;
 pub mod light;
 #[cfg(feature = "light")]
 pub mod texture;
+#[cfg(feature = "light")]
+pub mod poster;
 #[cfg(feature = "stages")]
 pub mod pipeline;
 

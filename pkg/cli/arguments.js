@@ -6,8 +6,9 @@ import { nearest } from '../engine/rules.js';
 import { CLOUD_FLAGS, cloudSaid } from './cloud-flags.js';
 import { READ_FLAGS, readSaid } from './read-flags.js';
 import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
-import { checkFormat, FORMATS, formatOf } from './formats.js';
+import { LIGHT, checkFormat, firstOf, formatOf } from './formats.js';
 import { MERGE_FLAGS, PREPARE_FLAGS, isEmpty, preparation } from './prepare-flags.js';
+import { CATALOGUE_FLAGS, catalogueSaid } from './catalogue-flags.js';
 import { UsageError } from './usage.js';
 
 /** @import { Command } from './flags.js' */
@@ -32,13 +33,14 @@ import { UsageError } from './usage.js';
  * @property {Record<string, any>} own options of the function that has the command's name
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
+ * @property {import('./catalogue-flags.js').CatalogueSaid} [catalogue] of a catalogue
  */
 
 /** The formats that a flag is for, and no others. */
-const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'usdz'] };
+const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'usdz', 'zip'] };
 
 /** @type {Command[]} */
-export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify', 'poster', 'catalogue'];
 const NAMES = `${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`;
 
 /**
@@ -72,7 +74,9 @@ function optionsOf(command) {
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
-    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, 'out-dir': { type: 'string' }, format: { type: 'string' }, ...CLOUD_FLAGS, ...(command !== 'simplify' && PREPARE_FLAGS) }),
+    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, ...CLOUD_FLAGS, ...(!LIGHT.includes(command) && PREPARE_FLAGS) }),
+    ...(!['inspect', 'catalogue'].includes(command) && { 'out-dir': { type: 'string' }, format: { type: 'string' } }),
+    ...(command === 'catalogue' && CATALOGUE_FLAGS),
     ...(command === 'merge' && MERGE_FLAGS),
     ...parserOptions(flagsOf(command)),
   };
@@ -125,12 +129,14 @@ function task(command, values, inputs) {
   const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write, prepare: preparation(values) };
   if (command === 'prepare' && isEmpty(shared.prepare)) throw new UsageError('what should be cut? --prepare RECIPE, --crop, --drop-strays, --drop-planes, --drop-floor or --keep-largest');
   if (command === 'simplify' && Object.keys(own).length === 0) throw new UsageError('how light should it be? --triangles N, --error SHARE, or both');
+  if (command === 'catalogue') return { ...shared, jobs: [], catalogue: catalogueSaid(values, inputs) };
   if (command === 'inspect') return { ...shared, jobs: inputs.map((input) => ({ input })) };
 
   const { out, 'out-dir': folder } = values;
   if (out !== undefined && folder !== undefined) throw new UsageError('--out and --out-dir exclude each other');
   const format = formatFor(command, values);
   checkKind({ ...write, texture: own.texture }, format);
+  if (own.lods && out === '-') throw new UsageError('--lods makes several files: -o FILE names the first');
   if (command === 'merge') return { ...shared, jobs: [oneOf(inputs, out, shared.json)], format };
   if (out !== undefined) return { ...shared, jobs: [single(inputs, out, shared.json)], format };
   if (folder !== undefined) return { ...shared, jobs: batch(inputs, folder, format), folder, format };
@@ -140,7 +146,7 @@ function task(command, values, inputs) {
 
 /** @param {Command} command @param {Record<string, any>} values */
 function formatFor(command, { out, format }) {
-  if (out === undefined || out === '-') return checkFormat(command, format ?? FORMATS[0], `--format ${format ?? FORMATS[0]}`);
+  if (out === undefined || out === '-') return checkFormat(command, format ?? firstOf(command), `--format ${format ?? firstOf(command)}`);
   if (format !== undefined) throw new UsageError(`--format is for --out-dir and standard output: '${out}' has its extension`);
   return formatOf(command, out);
 }

@@ -2,7 +2,7 @@
 import { randomUUID } from 'node:crypto';
 import { constants, openAsBlob } from 'node:fs';
 import { access, mkdir, readFile, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
-import { basename, dirname, join, relative, sep } from 'node:path';
+import { basename, dirname, extname, join, relative, sep } from 'node:path';
 import { addAbortSignal } from 'node:stream';
 import { buffer } from 'node:stream/consumers';
 
@@ -61,6 +61,12 @@ async function open(path, signal) {
  */
 export async function checkPlace(output) {
   await explained(`'${output}' cannot be written: `, stat(dirname(output)));
+}
+
+/** `model.lod1.glb` beside `model.glb`. @param {string} output @param {number} level */
+export function levelName(output, level) {
+  const extension = extname(output);
+  return `${output.slice(0, output.length - extension.length)}.lod${level}${extension}`;
 }
 
 /** @param {string} folder */

@@ -1,19 +1,19 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
 import { PointweaveError } from '../engine/errors.js';
 import { TARGETS } from '../engine/options-table.js';
-import { MAPS, TABLES } from '../engine/options.js';
+import { LODS, MAPS, TABLES } from '../engine/options.js';
 import { rule } from '../engine/rules.js';
 import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
 /** @import { Rule, Table } from '../engine/rules.js' */
-/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'simplify' | 'merge' | 'inspect'} Command */
+/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'simplify' | 'merge' | 'inspect' | 'poster' | 'catalogue'} Command */
 
 /**
  * @typedef {object} Flag
  * @property {string} name as it is typed, without the dashes
  * @property {string} key the option's name
- * @property {'target' | 'reduce' | 'reconstruct' | 'simplify' | 'texture' | 'read' | 'write' | 'none'} group
+ * @property {'target' | 'reduce' | 'reconstruct' | 'simplify' | 'texture' | 'poster' | 'read' | 'write' | 'none'} group
  * @property {Rule} rule
  * @property {'switch' | 'value' | 'list'} kind a switch has `--no-` too, a list can be given more than once
  * @property {string} words what it does, in one line
@@ -23,9 +23,13 @@ import { UsageError } from './usage.js';
 export const WORDS = {
   ...FLAGS,
   faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
-  texture: 'pictures of the points on the mesh, so many texels wide; for GLB and USDZ files',
+  texture: 'pictures of the points on the mesh, so many texels wide; for GLB, USDZ and ZIP files',
   maps: 'which pictures',
   error: 'largest distance between the mesh as it was and as it is, a share of the diagonal',
+  lods: 'most triangles of several meshes, instead of --triangles; the second is FILE.lod1.glb',
+  size: 'of the picture, in pixels',
+  camera: 'from where, as camera-orbit of <point-weave>',
+  background: 'behind it: #rrggbb or transparent',
   up: 'which way is up in the result; default: what its format asks for',
   unit: 'the unit of the result; default: what its format asks for',
   encoding: 'of a PLY file',
@@ -35,6 +39,12 @@ export const WORDS = {
 
 /** `--texture 2048 --maps color,normal`. */
 const TEXTURES = { texture: TABLES.texture.size, maps: rule(`one of or both of ${MAPS.join(',')}`, (value) => typeof value === 'string' && value.split(',').every((name) => MAPS.includes(name))) };
+
+/** `--lods 50000,10000,2000`. */
+const LEVELS = { lods: rule('1 to 8 numbers apart by commas, each less than the one before', (value, path) => LODS.accepts(numbersIn(value), path)) };
+
+/** `--size 800x600`. */
+const POSTERS = { ...TABLES.poster, size: rule('WIDTHxHEIGHT, each 16 to 4096', (value, path) => TABLES.poster.size.accepts(sizeOf(value), path)) };
 
 /** `--count auto` is `target: 'auto'`. */
 const AMOUNTS = {
@@ -50,12 +60,13 @@ export function flagsOf(command) {
   const read = flags('read', TABLES.read);
   if (command === 'inspect') return read;
   if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
+  if (command === 'poster') return [...flags('poster', POSTERS), ...read.filter(({ key }) => key !== 'faces')];
   if (command === 'simplify') return [...flags('simplify', TABLES.simplify), ...read.filter(({ key }) => key !== 'faces'), ...flags('write', TABLES.write)];
   const reduce = [...flags('target', AMOUNTS), ...flags('reduce', TABLES.reduce)];
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
-  return [...read, ...reduce, ...(command === 'reconstruct' ? [none, ...flags('reconstruct', surface), ...flags('texture', TEXTURES)] : []), ...flags('write', TABLES.write)];
+  return [...read, ...reduce, ...(command !== 'reduce' ? [none, ...flags('reconstruct', surface), ...flags('texture', { ...LEVELS, ...TEXTURES })] : []), ...(command === 'catalogue' ? [] : flags('write', TABLES.write))];
 }
 
 /**
@@ -72,6 +83,16 @@ function flags(group, table) {
     const name = group === 'write' && (key === 'up' || key === 'unit') ? `to-${key}` : kebab(key);
     return { name, key, group, rule, kind, words: WORDS[key] };
   });
+}
+
+/** @param {unknown} text @param {string} [mark] */
+function numbersIn(text, mark = ',') {
+  return String(text).split(mark).map((digits) => (/^\d+$/.test(digits) ? Number(digits) : NaN));
+}
+
+/** @param {unknown} text */
+function sizeOf(text) {
+  return numbersIn(text, 'x');
 }
 
 /** @param {string} key */
@@ -101,11 +122,12 @@ export function parserOptions(flags) {
  */
 export function optionsFrom(command, values) {
   /** @type {Record<Flag['group'], Record<string, any>>} */
-  const given = { target: {}, reduce: {}, reconstruct: {}, simplify: {}, texture: {}, read: {}, write: {}, none: {} };
+  const given = { target: {}, reduce: {}, reconstruct: {}, simplify: {}, texture: {}, poster: {}, read: {}, write: {}, none: {} };
   for (const flag of flagsOf(command)) {
     const value = valueOf(flag, values);
     if (value !== undefined) given[flag.group][flag.key] = value;
   }
+  if (command === 'poster') return { own: { ...given.poster, ...(given.poster.size && { size: sizeOf(given.poster.size) }) }, read: given.read, write: {} };
   if (command === 'simplify') return { own: given.simplify, read: given.read, write: given.write };
   const targets = Object.keys(given.target);
   if (targets.length > 1) throw new UsageError(`${targets.map((key) => `--${key}`).join(' and ')} exclude each other`);
@@ -113,10 +135,11 @@ export function optionsFrom(command, values) {
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  const { texture: size, maps } = given.texture;
+  const { texture: size, maps, lods } = given.texture;
+  if (lods !== undefined && given.reconstruct.triangles !== undefined) throw new UsageError('--lods and --triangles exclude each other');
   if (maps !== undefined && size === undefined) throw new UsageError('--maps says which pictures --texture makes');
   const texture = size === undefined ? {} : { texture: { size, ...(maps && { maps: maps.split(',') }) } };
-  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...texture }, read: given.read, write: given.write };
+  return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...(lods !== undefined && { lods: numbersIn(lods) }), ...texture }, read: given.read, write: given.write };
 }
 
 /** @param {Flag} flag @param {Record<string, any>} values */

@@ -1,8 +1,9 @@
 /** What `--help` prints. */
 import { CLOUD_ROWS } from './cloud-flags.js';
-import { FORMATS, isMesh } from './formats.js';
+import { FORMATS, LIGHT, firstOf, isMesh } from './formats.js';
 import { flagsOf } from './flags.js';
 import { MERGE_ROWS, PREPARE_ROWS } from './prepare-flags.js';
+import { CATALOGUE_ROWS } from './catalogue-flags.js';
 import { READ_ROWS } from './read-flags.js';
 
 /** @import { Command, Flag } from './flags.js' */
@@ -15,6 +16,8 @@ const DOES = {
   prepare: 'the object alone: without floor, strays and other things',
   merge: 'several scans as one',
   simplify: 'any mesh with fewer triangles',
+  poster: 'a picture of a scan or a mesh',
+  catalogue: 'a folder of scans as a web page of light models',
 };
 
 const COMMON = [
@@ -22,10 +25,11 @@ const COMMON = [
   ['--threads N', 'threads to compute with; default: one a core'],
   ['-h, --help', 'print this'],
 ];
-const OUTPUT = [
-  ['-o, --out FILE', `where the result goes: ${FORMATS.map((name) => `.${name}`).join(' ')}; - is standard output`],
+/** @param {Command} command */
+const outputOf = (command) => [
+  ['-o, --out FILE', `where the result goes: ${(command === 'poster' ? ['png'] : FORMATS).map((name) => `.${name}`).join(' ')}; - is standard output`],
   ['--out-dir FOLDER', 'where the results of several files go, under their own names'],
-  ['--format NAME', `of what has no file name of its own; default: ${FORMATS[0]}`],
+  ['--format NAME', `of what has no file name of its own; default: ${firstOf(command)}`],
 ];
 
 /** @type {[Flag['group'][], string][]} */
@@ -34,6 +38,7 @@ const SECTIONS = [
   [['reduce', 'none'], 'Reduction'],
   [['reconstruct', 'texture'], 'Surface'],
   [['simplify'], 'How light it becomes, one of or both'],
+  [['poster'], 'Picture'],
   [['write'], 'File'],
 ];
 
@@ -47,6 +52,8 @@ export function overview() {
   pointweave inspect scan.ply
   pointweave prepare scan.e57 -o object.ply --drop-floor --keep-largest
   pointweave simplify mesh.ply -o light.glb --triangles 10000
+  pointweave poster mesh.glb -o poster.png --size 800x600
+  pointweave catalogue scans/ -o site/
 
 Commands, each with --help
 ${rows(commands)}
@@ -57,13 +64,14 @@ ${rows(commands)}
 /** @param {Command} command */
 export function help(command) {
   const flags = flagsOf(command);
-  const output = command === 'inspect' ? '' : ` -o result.${isMesh(command) ? 'glb' : 'ply'} [options]`;
+  const result = command === 'poster' ? 'poster.png' : `result.${isMesh(command) ? 'glb' : 'ply'}`;
+  const output = command === 'inspect' ? '' : ` -o ${result} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
   const works = command !== 'inspect';
-  const listed = [...sections, ['Before', works && command !== 'simplify' ? [...(command === 'merge' ? MERGE_ROWS : []), ...PREPARE_ROWS] : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(works ? OUTPUT : []), ...COMMON]]];
+  const listed = [...sections, ['Before', works && !LIGHT.includes(command) ? [...(command === 'merge' ? MERGE_ROWS : []), ...PREPARE_ROWS] : []], ['Scan', [...flags.filter(({ group }) => group === 'read').map(row), ...READ_ROWS, ...(works ? CLOUD_ROWS : [])]], ['General', [...(command === 'catalogue' ? CATALOGUE_ROWS : works ? outputOf(command) : []), ...COMMON]]];
   const filled = listed.filter(([, lines]) => lines.length > 0);
   const several = `  pointweave ${command} a.ply b.ply${command === 'inspect' ? '' : ' --out-dir results'}\n  - reads standard input`;
-  const usage = command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} ${command === 'simplify' ? 'mesh' : 'scan'}.ply${output}\n${several}`;
+  const usage = command === 'catalogue' ? '  pointweave catalogue scans/ -o site/ [options]' : command === 'merge' ? `  pointweave merge a.ply b.ply${output}` : `  pointweave ${command} ${command === 'simplify' ? 'mesh' : 'scan'}.ply${output}\n${several}`;
   return `pointweave ${command}: ${DOES[command]}
 
 ${usage}

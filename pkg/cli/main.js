@@ -4,7 +4,8 @@ import { constants } from 'node:os';
 import { COMMANDS, parse } from './arguments.js';
 import { sentence } from './files.js';
 import { help, overview } from './help.js';
-import { run, say } from './run.js';
+import { run } from './run.js';
+import { say } from './say.js';
 import { UsageError } from './usage.js';
 
 /**

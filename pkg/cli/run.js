@@ -4,7 +4,10 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
-import { besideOf, checkPlace, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { besideOf, checkPlace, levelName, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { LIGHT } from './formats.js';
+import { say } from './say.js';
+import { bytesOf, skinOf } from './skin.js';
 import { stepsOf } from './prepare-flags.js';
 import { doubtLines, infoLines, lightLine, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
 import { UsageError } from './usage.js';
@@ -22,6 +25,7 @@ import { UsageError } from './usage.js';
  * @returns {Promise<boolean>} whether all of it was done
  */
 export async function run(task, signal) {
+  if (task.catalogue) return (await import('./catalogue.js')).catalogue(task, task.catalogue, signal);
   await checkOutputs(task.jobs);
   const steps = await stepsOf(task.prepare);
   await compressorFor(task.write.meshopt); // that its packages are missing is known before the work
@@ -103,6 +107,12 @@ async function perform(engine, task, job, watch) {
     const report = { inputPoints: count, outputPoints: prepared.kept.length, steps: told(prepared.steps) };
     return { report, text: stepsLine(count, prepared.steps), doubts: reasonLines(prepared.steps, inputs) };
   }
+  if (command === 'poster') {
+    const picture = await engine.poster(withSaid(cloud, said), { ...own, ...watch, transfer: true });
+    await keep(output, picture.data, watch);
+    const { width, height, data: { length } } = picture;
+    return { report: { width, height, bytes: length }, text: `${width} × ${height} pixels, ${length} bytes`, doubts: [] };
+  }
   if (command === 'simplify') {
     const { indices } = cloud;
     if (!indices) throw new PointweaveError({ code: 'needs-triangles', message: 'the file has no triangles: reconstruct makes a mesh of points' });
@@ -112,8 +122,9 @@ async function perform(engine, task, job, watch) {
     return { report: simplified, text: lightLine(simplified), doubts: simplified.reason ? [simplified.reason] : [] };
   }
   const prepare = steps.length > 0 ? { prepare: steps } : {};
-  const result = await engine[command](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
+  const result = await engine[command === 'reduce' ? command : 'reconstruct'](withSaid(cloud, said), { ...own, ...prepare, ...watch, transfer: true });
   await save(engine, task, output, result, watch);
+  for (const [i, level] of (('lods' in result && result.lods) || []).entries()) await save(engine, task, output && levelName(output, i + 1), level, watch);
   const { report, prepared } = result;
   const before = prepared ? `${stepsLine(prepared.labels.length, prepared.steps)}; ` : '';
   const reasons = prepared ? reasonLines(prepared.steps) : [];
@@ -128,11 +139,13 @@ async function perform(engine, task, job, watch) {
  */
 async function scanOf(engine, { command, read }, input, watch) {
   const name = input === '-' ? undefined : input;
-  const cloud = await engine.read(await openInput(input, watch.signal), { name, beside: besideOf(input), ...(command === 'simplify' && { faces: 'mesh' }), ...read, ...watch, transfer: true });
+  const file = await openInput(input, watch.signal);
+  const whole = LIGHT.includes(command) && { faces: /** @type {const} */ ('mesh') };
+  const cloud = await engine.read(file, { name, beside: besideOf(input), ...whole, ...read, ...watch, transfer: command !== 'poster' });
   if (cloud.positions.length === 0 && cloud.file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(cloud.file.dropped)}, none of them finite` });
   }
-  return cloud;
+  return command === 'poster' ? { ...cloud, ...skinOf(await bytesOf(file), cloud) } : cloud;
 }
 
 /**
@@ -145,8 +158,13 @@ async function scanOf(engine, { command, read }, input, watch) {
 async function save(engine, { write, format }, output, result, { signal }) {
   if (output === undefined) return;
   const bytes = await engine.write(result, { ...write, format: /** @type {any} */ (format), signal, transfer: true });
+  await keep(output, bytes, { signal });
+}
+
+/** @param {string | undefined} output @param {Uint8Array} bytes @param {{ signal: AbortSignal }} watch */
+async function keep(output, bytes, { signal }) {
   if (output === '-') await print(bytes);
-  else await writeOutput(output, bytes, signal);
+  else if (output !== undefined) await writeOutput(output, bytes, signal);
 }
 
 /** Reports without a label for every point. @param {import('../types.js').StepReport[]} steps */
@@ -186,9 +204,4 @@ function errorEntry(error) {
 /** @param {Uint8Array} bytes @returns {Promise<void>} */
 function print(bytes) {
   return new Promise((resolve, reject) => process.stdout.write(bytes, (error) => (error ? reject(error) : resolve())));
-}
-
-/** @param {string} line */
-export function say(line) {
-  process.stderr.write(`pointweave: ${line}\n`);
 }

@@ -3,7 +3,7 @@ import { Engine } from './engine.js';
 
 /**
  * @param {import('./engine.js').Platform} platform
- * @returns {Pick<typeof import('../types.js'), 'createEngine' | 'prepare' | 'simplify' | 'texture' | 'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample'>}
+ * @returns {Pick<typeof import('../types.js'), 'createEngine' | 'prepare' | 'simplify' | 'texture' | 'poster' | 'reduce' | 'reconstruct' | 'inspect' | 'read' | 'write' | 'sample'>}
  */
 export function makeApi(platform) {
   /** Made on the first call of a function that takes no engine. @type {Engine | undefined} */
@@ -19,6 +19,7 @@ export function makeApi(platform) {
     prepare: (cloud, steps, options) => engine().prepare(cloud, steps, options),
     simplify: (mesh, options) => engine().simplify(mesh, options),
     texture: (mesh, cloud, options) => engine().texture(mesh, cloud, options),
+    poster: (what, options) => engine().poster(what, options),
     reduce: (cloud, options) => engine().reduce(cloud, options),
     reconstruct: (cloud, options) => engine().reconstruct(cloud, options),
     inspect: (cloud, options) => engine().inspect(cloud, options),

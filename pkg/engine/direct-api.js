@@ -1,6 +1,6 @@
 /**
  * Calls into one instance in the caller's thread: `direct.js` and `direct.node.js` export them. Those of the engine are synchronous;
- * `prepare`, `simplify`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
+ * `prepare`, `simplify`, `poster`, `read`, `write` and `sample` are wasm of their own, which is loaded when they are called.
  */
 import { counted } from './amount.js';
 import { direction } from './axes.js';
@@ -12,6 +12,7 @@ import { lightened, meshArgument } from './light.js';
 import { inProcessHost, runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, lookedAt, preparedArgument, preparedOf } from './preparing.js';
+import { posterArguments, posterOf } from './posing.js';
 import { badOption } from './rules.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
@@ -38,7 +39,7 @@ function withCount(cloud, own) {
 }
 
 /** Calls that wait for wasm of their own. @type {Record<string, (place: Place, ...given: [any, any, any]) => Promise<any>>} */
-const WAITING = { prepare, simplify, read, write, sample };
+const WAITING = { prepare, simplify, poster, read, write, sample };
 
 /**
  * @param {Pick<import('./engine.js').Platform, 'compile' | 'loadBindings'>} platform
@@ -80,7 +81,9 @@ function run(core, call, subject, options) {
   signal?.throwIfAborted();
   if (prepare) throw badOption('prepare', "undefined: call prepare before, as it waits for its wasm", prepare);
   if (own.triangles !== undefined) throw badOption('triangles', "undefined: call simplify after, as it waits for its wasm", own.triangles);
-  if (own.texture) throw badOption('texture', 'undefined: only an engine makes textures, as their wasm has to be waited for', own.texture);
+  for (const option of ['texture', 'lods']) {
+    if (own[option]) throw badOption(option, 'undefined: only an engine does it, as its wasm has to be waited for', own[option]);
+  }
   if (!core.alive) throw new PointweaveError({ code: 'internal', message: 'a call before has broken this instance: load another' });
   return signed(runHere(core, { call, args: ARGUMENTS[call](subject, own, transfer) }, { signal, onProgress }), CHOICE);
 }
@@ -116,6 +119,14 @@ async function simplify(place, mesh, options) {
   watch.signal?.throwIfAborted();
   const args = [meshArgument(mesh, transfer), own];
   return withModule(place, 'light', watch, async (ask) => lightened(mesh, await ask({ call: 'simplify', args })));
+}
+
+/** @param {Place} place @param {any} what @param {unknown} options */
+async function poster(place, what, options) {
+  const { own, transfer, ...watch } = checkOptions('poster', options);
+  watch.signal?.throwIfAborted();
+  const args = posterArguments(what, own, transfer);
+  return withModule(place, 'light', watch, async (ask) => posterOf(await ask({ call: 'poster', args }), args[1]));
 }
 
 /** @param {Place} place @param {any} data @param {unknown} options */

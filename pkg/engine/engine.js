@@ -4,6 +4,7 @@
  */
 import { counted } from './amount.js';
 import { direction } from './axes.js';
+import { chooseBuild } from './choice.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
 import { left, lightened, meshArgument, ownMesh, pointsBeside, shownPoints } from './light.js';
@@ -11,6 +12,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
+import { posterArguments, posterOf } from './posing.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf, split } from './preparing.js';
 import { readScan } from '../files/archive.js';
@@ -35,9 +37,6 @@ import { byteSourceOf, nameOf } from '../files/byte-source.js';
  */
 
 /** @typedef {import('../types.js').Engine} Declared */
-
-/** More threads than this cost memory and gain nothing. */
-const MOST_AUTO_THREADS = 16;
 
 /** About how much of a reconstruction with `triangles` is over when they are counted. */
 const LIGHT = 0.85;
@@ -159,6 +158,13 @@ export class Engine {
     return lightened(mesh, await this.#runIn('light', { call: 'texture', args }, watch));
   }
 
+  /** @param {PointCloud | import('../types.js').TriangleMesh} what @param {import('../types.js').PosterOptions & CallOptions} [options] */
+  async poster(what, options) {
+    const { own, transfer, ...watch } = this.#check('poster', options);
+    const args = posterArguments(what, own, transfer);
+    return posterOf(await this.#runIn('light', { call: 'poster', args }, watch), args[1]);
+  }
+
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
   async inspect(cloud, options) {
     const { transfer, ...watch } = this.#check('inspect', options);
@@ -266,16 +272,25 @@ export class Engine {
   async #compute(call, cloud, options) {
     const { own: { prepare, ...own }, transfer, ...watch } = this.#check(call, options);
     const given = cloudArgument(cloud, transfer);
-    const { texture, ...engineOwn } = own;
-    const { triangles } = own;
-    if (triangles === undefined && !texture) return this.#made(call, given, own, prepare, watch);
+    const { texture, lods, ...engineOwn } = own;
+    const budgets = lods ?? [own.triangles];
+    if (budgets[0] === undefined && !texture) return this.#made(call, given, own, prepare, watch);
     const [first, second] = split(watch, texture ? TEXTURED : LIGHT);
     const points = texture && shownPoints(given);
     const mesh = await this.#made(call, given, engineOwn, prepare, first);
-    const request = texture
-      ? { call: /** @type {const} */ ('texture'), args: [ownMesh(mesh), left(points, mesh), { triangles, ...texture }] }
-      : { call: /** @type {const} */ ('simplify'), args: [ownMesh(mesh), { triangles }] };
-    return lightened(mesh, await this.#runIn('light', request, second));
+    let rest = second;
+    const levels = [];
+    for (const [i, triangles] of budgets.entries()) {
+      const after = budgets.length - i - 1;
+      const [now, later] = split(rest, 1 / (after + 1));
+      const args = texture ? [ownMesh(mesh), left(points, mesh), { triangles, ...texture }] : [ownMesh(mesh), { triangles }];
+      // The last call may have the memory.
+      /** @type {Request} */
+      const request = { call: texture ? 'texture' : 'simplify', args: after > 0 ? structuredClone(args) : args };
+      levels.push(lightened(mesh, await this.#runIn('light', request, now)));
+      rest = later;
+    }
+    return lods ? { ...levels[0], lods: levels.slice(1) } : levels[0];
   }
 
   /**
@@ -408,25 +423,6 @@ export class Engine {
       ? workerHost(startOne, { build, threads, module })
       : inProcessHost(await loadBindings(build), { build, module });
   }
-}
-
-/**
- * Threads need a worker: who waits for them must not be the caller's thread, which could then neither abort nor hear
- * that one of them died.
- * @param {Platform} platform
- * @param {'auto' | number} threads
- * @param {boolean} [worker]
- * @returns {{ build: Build, threads: number, reason: string }}
- */
-function chooseBuild(platform, threads, worker) {
-  const single = /** @type {const} */ ({ build: 'single', threads: 1 });
-  if (threads === 1) return { ...single, reason: 'one thread was asked for' };
-  if (worker === false) return { ...single, reason: 'threads need a worker' };
-  const { possible, reason } = platform.threads();
-  if (!possible) return { ...single, reason };
-  const wanted = threads === 'auto' ? Math.min(platform.cores(), MOST_AUTO_THREADS) : threads;
-  if (wanted === 1) return { ...single, reason: 'there is one processor core' };
-  return { build: 'threads', threads: wanted, reason };
 }
 
 function nothing() {}

@@ -4,6 +4,7 @@
  */
 import { AXES, UNITS, isDirection } from './axes.js';
 import * as TABLE from './options-table.js';
+import { colorOf, orbitOf } from './posing.js';
 import { RECIPE } from './preparing.js';
 import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
 
@@ -31,7 +32,7 @@ const READ = {
 };
 
 const WRITE = {
-  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz'),
+  format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz', 'zip'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
   up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },
@@ -44,12 +45,23 @@ const SIMPLIFY = {
   error: rule('a number in (0, 1]', (value) => typeof value === 'number' && value > 0 && value <= 1),
 };
 
+/** Budgets of several meshes, each less than the one before. */
+export const LODS = rule('an array of 1 to 8 integers of at least 1, each less than the one before', (value) =>
+  Array.isArray(value) && value.length > 0 && value.length <= 8 && value.every((n, i) => SIMPLIFY.triangles.accepts(n, '') && (i === 0 || n < value[i - 1])));
+
 /** The pictures that a mesh can have. */
 export const MAPS = ['color', 'normal'];
 
 const TEXTURE = {
   size: integer(64, 8192),
   maps: rule(`an array of ${MAPS.map((name) => `'${name}'`).join(' and ')}`, (value) => Array.isArray(value) && value.every((name) => MAPS.includes(name))),
+};
+
+const side = integer(16, 4096);
+const POSTER = {
+  size: rule('a width and a height, integers from 16 to 4096', (value) => Array.isArray(value) && value.length === 2 && value.every((n) => side.accepts(n, ''))),
+  camera: rule("'theta phi radius', each auto or with its unit: deg or rad, deg or rad, and % or m", (value) => orbitOf(value) !== undefined),
+  background: rule("'transparent' or '#rrggbb'", (value) => value === 'transparent' || (typeof value === 'string' && colorOf(value) !== undefined)),
 };
 
 const MODEL = choice('duck', 'pig', 'part', 'desk');
@@ -84,10 +96,10 @@ const CALL = {
 const FIRST = { prepare: RECIPE };
 
 /** Of a reconstruction: what is done to the mesh after. */
-const LAST = { texture: nested('texture', TEXTURE) };
+const LAST = { texture: nested('texture', TEXTURE), lods: LODS };
 
 /** The command line has its flags from here. */
-export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: { triangles: SIMPLIFY.triangles, ...TEXTURE }, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
+export const TABLES = { reduce: REDUCE, reconstruct: RECONSTRUCT, prepare: {}, simplify: SIMPLIFY, texture: { triangles: SIMPLIFY.triangles, ...TEXTURE }, poster: POSTER, inspect: {}, read: READ, write: WRITE, sample: SAMPLE };
 
 /**
  * What is taken for each option that is not given. `undefined` means that it follows from others.
@@ -105,6 +117,7 @@ export function checkOptions(call, options = {}) {
   const table = call === 'reduce' || call === 'reconstruct' ? { ...TABLES[call], ...FIRST, ...(call === 'reconstruct' && LAST), ...CALL } : { ...TABLES[call], ...CALL };
   const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
+  if (own.lods && own.triangles !== undefined) throw badOption('triangles', 'undefined where lods are given', own.triangles);
   if (call === 'simplify' && own.triangles === undefined && own.error === undefined) throw badOption('triangles', 'a number of triangles, or error', undefined);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }

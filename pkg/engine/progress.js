@@ -12,6 +12,7 @@ const SHARES = {
   ],
   simplify: [['simplify', 100]],
   texture: [['simplify', 25], ['texture', 75]],
+  poster: [['texture', 100]],
   inspect: [['octree', 10], ['features', 90]],
 };
 

@@ -18,6 +18,9 @@ import { readFile, readerOf } from './reading.js';
 /** Names of what may be a scan; text may be one where nothing else is. */
 const SCAN = /\.(ply|pcd|las|laz|e57|ptx|obj|off|coff|noff|cnoff|stl|glb|xyz|pts|xyzn|xyzrgb|asc|grid|agr|grd|tif|tiff|3mf|splat|spz)$/i;
 const TEXT = /\.(txt|csv)$/i;
+/** Whether a file of that name is likely to be a scan. @param {string} name */
+export const isScan = (name) => SCAN.test(name) && !HIDDEN.test(name);
+
 /** What systems put beside. */
 const HIDDEN = /(^|\/)(__MACOSX\/|\.)/;
 

@@ -37,17 +37,17 @@ extern "C" {
     fn faces(this: &PointCloud) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     pub fn indices(this: &PointCloud) -> Option<Uint32Array>;
-    #[cfg(feature = "exports")]
+    #[cfg(any(feature = "exports", feature = "light"))]
     #[wasm_bindgen(method, getter)]
     pub fn uvs(this: &PointCloud) -> Option<Float32Array>;
-    #[cfg(feature = "exports")]
+    #[cfg(any(feature = "exports", feature = "light"))]
     #[wasm_bindgen(method, getter)]
     pub fn tangents(this: &PointCloud) -> Option<Float32Array>;
     /// The bytes of PNG files.
-    #[cfg(feature = "exports")]
+    #[cfg(any(feature = "exports", feature = "light"))]
     #[wasm_bindgen(method, getter, js_name = colorPicture)]
     pub fn color_picture(this: &PointCloud) -> Option<Uint8Array>;
-    #[cfg(feature = "exports")]
+    #[cfg(any(feature = "exports", feature = "light"))]
     #[wasm_bindgen(method, getter, js_name = normalPicture)]
     pub fn normal_picture(this: &PointCloud) -> Option<Uint8Array>;
 }

@@ -1,14 +1,15 @@
-//! Meshes with fewer triangles, and with pictures, from JavaScript.
+//! Meshes with fewer triangles, and with pictures, and posters, from JavaScript.
 
 use crate::base::error::Error;
 use crate::cloud::{Attribute, Cloud};
 use crate::formats::Positions;
-use crate::js::clouds::{PointCloud, Precision};
+use crate::js::clouds::{PointCloud, Precision, triple};
 use crate::js::progress::JsProgress;
 use crate::js::values::to_js;
 use crate::js::{JsResult, object, optional};
 use crate::light::{Painted, SimplifyParams};
 use crate::pipeline;
+use crate::poster::{PosterParams, Reach, Scene, View};
 use crate::texture::{Map, Texture, TextureParams};
 use js_sys::{
     Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
@@ -124,6 +125,68 @@ pub fn texture(
         set("report", to_js(report)?)?;
     }
     Ok(result)
+}
+
+#[wasm_bindgen]
+extern "C" {
+    /// `{ width, height, azimuth, polar, share, length, up, background }`; `pkg/engine/posing.js` has made them.
+    pub type PosterSettings;
+    #[wasm_bindgen(method, getter)]
+    fn width(this: &PosterSettings) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn height(this: &PosterSettings) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn azimuth(this: &PosterSettings) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn polar(this: &PosterSettings) -> Option<f64>;
+    /// Of the distance from which everything is seen.
+    #[wasm_bindgen(method, getter)]
+    fn share(this: &PosterSettings) -> Option<f64>;
+    /// In the caller's unit.
+    #[wasm_bindgen(method, getter)]
+    fn length(this: &PosterSettings) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn up(this: &PosterSettings) -> Array;
+    #[wasm_bindgen(method, getter)]
+    fn background(this: &PosterSettings) -> Option<Array>;
+}
+
+/// [`crate::poster::poster`] of a cloud or a mesh: a PNG file's bytes.
+#[wasm_bindgen]
+pub fn poster(what: &PointCloud, settings: &PosterSettings, progress: Function) -> JsResult {
+    let (cloud, _) = what.to_cloud()?;
+    let indices = what.indices().map(|indices| indices.to_vec());
+    let uvs = what.uvs().map(|uvs| uvs.to_vec());
+    let tangents = what.tangents().map(|tangents| tangents.to_vec());
+    let [color, normal] =
+        [what.color_picture(), what.normal_picture()].map(|file| file.map(|file| file.to_vec()));
+    let scene = Scene {
+        points: &cloud.points,
+        triangles: indices.as_deref().map(|corners| corners.as_chunks().0),
+        normals: cloud.normals.as_deref(),
+        colors: cloud.colors.as_deref(),
+        uvs: uvs.as_deref().map(|uvs| uvs.as_chunks().0),
+        tangents: tangents.as_deref().map(|tangents| tangents.as_chunks().0),
+        color: color.as_deref(),
+        normal: normal.as_deref(),
+    };
+    let params = PosterParams {
+        size: [settings.width(), settings.height()].map(|n| n as usize),
+        view: View {
+            azimuth: settings.azimuth(),
+            polar: settings.polar(),
+            reach: match settings.length() {
+                Some(length) => Reach::Length(length / cloud.frame.diagonal),
+                None => Reach::Share(settings.share().unwrap_or(1.0)),
+            },
+        },
+        up: triple(settings.up()).into(),
+        background: settings
+            .background()
+            .map(|color| triple(color).map(|c| c as u8)),
+    };
+    let png = crate::poster::poster(&scene, &params, &mut JsProgress(progress))?;
+    Ok(Uint8Array::from(&png[..]).into())
 }
 
 /// A mesh with positions of the type and frame of the caller's.

@@ -33,7 +33,7 @@ type Equal<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ?
 type Method = Exclude<keyof Engine, 'build' | 'threads' | 'reason'>;
 /** The module behind an engine declares the same: `any` in it would agree with everything. */
 export const behind: { [name in Method]: Equal<Parameters<Made[name]>, Parameters<Engine[name]>> } & { [name in Method]: Equal<ReturnType<Made[name]>, ReturnType<Engine[name]>> } =
-  { prepare: true, simplify: true, texture: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
+  { prepare: true, simplify: true, texture: true, poster: true, reduce: true, reconstruct: true, inspect: true, read: true, write: true, sample: true, dispose: true };
 
 export async function use(positions: Float32Array, precise: Float64Array, signal: AbortSignal, file: File) {
   const reduced: ReducedCloud<Float32Array> = await reduce({ positions }, { target: { ratio: 0.3 }, signal });

@@ -198,10 +198,10 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['recuce', 'scan.ply'], /no command 'recuce': did you mean reduce\?/],
     [['reduce'], /reduce needs a file/],
     [['scan.ply', '-o', 'mesh.glb'], /'scan\.ply' looks like a file, .*: did you mean pointweave reconstruct scan\.ply -o mesh\.glb\?$/],
-    [['--ratio', '0.2', 'scan.ply'], /a command comes before --ratio: reduce, reconstruct, inspect, prepare, merge or simplify$/],
+    [['--ratio', '0.2', 'scan.ply'], /a command comes before --ratio: reduce, reconstruct, inspect, prepare, merge, simplify, poster or catalogue$/],
     [['reduce', 'scan.ply'], /where should the result go\?/],
-    [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj, pcd, las, laz, usdz$/],
-    [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl, pcd, las, laz, 3mf, usdz$/],
+    [['reduce', 'scan.ply', '-o', 'light.step'], /'light\.step' is no format that is written: expected ply, xyz, glb, obj, pcd, las, laz, usdz, zip$/],
+    [['reconstruct', 'scan.ply', '-o', 'mesh'], /'mesh' has no extension to say the format: expected ply, xyz, glb, obj, stl, pcd, las, laz, 3mf, usdz, zip$/],
     [['reduce', 'scan.ply', '-o'], /--out needs a value$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--seed', '-1'], /--seed needs a value; one that begins with - is given as --seed=-…$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--seed=-1'], /--seed is '-1': expected an integer/],
@@ -209,8 +209,8 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', '-o', 'light.stl'], /STL and 3MF files hold triangles, not points/],
     [['reduce', 'scan.ply', '-o', 'light.3mf'], /STL and 3MF files hold triangles, not points/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--ration', '0.5'], /no option 'ration': did you mean --ratio\?/],
-    [['reduce', 'scan.ply', '-o', 'a.ply', '--accuracy', '0.5'], /no option 'accuracy', which is for reconstruct$/],
-    [['inspect', 'scan.ply', '--ratio', '0.5'], /no option 'ratio', which is for reduce and reconstruct$/],
+    [['reduce', 'scan.ply', '-o', 'a.ply', '--accuracy', '0.5'], /no option 'accuracy', which is for reconstruct and catalogue$/],
+    [['inspect', 'scan.ply', '--ratio', '0.5'], /no option 'ratio', which is for reduce, reconstruct and catalogue$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--ratio', '20%'], /--ratio is '20%': expected a number in \(0, 1\]: did you mean 0\.2\?$/],
     [['reduce', 'scan.ply', '-o', 'a.ply', '--ratio', '1/3'], /did you mean 0\.3333\?$/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--accuracy', '0.1 %'], /did you mean 0\.001\?$/],
@@ -231,7 +231,10 @@ test('what cannot be meant has exit code 2, before anything is read or written',
     [['reduce', 'scan.ply', 'a/scan.xyz', '--out-dir', 'b'], /'scan\.ply' and 'a\/scan\.xyz' would both become 'b\/scan\.ply'/],
     [['reduce', '-', '--out-dir', 'b'], /standard input has no name/],
     [['inspect', '-', '-'], /standard input can be read once/],
-    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce, reconstruct, prepare, merge and simplify$/],
+    [['inspect', 'scan.ply', '-o', 'a.ply'], /inspect has no option 'o', which is for reduce, reconstruct, prepare, merge, simplify, poster and catalogue$/],
+    [['poster', 'scan.ply', '-o', 'a.jpg'], /'a\.jpg' is no format of posters: expected png$/],
+    [['poster', 'scan.ply', '-o', 'a.png', '--size', '800'], /--size is '800': expected WIDTHxHEIGHT, each 16 to 4096$/],
+    [['catalogue', 'scans'], /where should the site go\? -o FOLDER$/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--no-reduce', '--ratio', '0.5'], /--no-reduce leaves nothing/],
     [['reconstruct', 'scan.ply', '-o', 'a.ply', '--sharp', '--no-sharp'], /exclude each other/],
   ];
@@ -334,8 +337,10 @@ test('every option of the package is a flag, with a word in the help', async (t)
   for (const key of Object.keys(fitting)) assert.match(surface, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
   const simpler = String((await good(path, ['simplify', '--help'])).stdout);
   for (const key of Object.keys(TABLES.simplify)) assert.match(simpler, new RegExp(`\\n  --${key}\\b`), key);
-  for (const flag of ['texture', 'maps']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
-  const made = { ...TABLES.simplify, texture: {}, maps: {} };
+  for (const flag of ['texture', 'maps', 'lods']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
+  const drawn = String((await good(path, ['poster', '--help'])).stdout);
+  for (const key of Object.keys(TABLES.poster)) assert.match(drawn, new RegExp(`\\n  --${key}\\b`), key);
+  const made = { ...TABLES.simplify, ...TABLES.poster, texture: {}, maps: {}, lods: {} };
   assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...made, ...worded, ...writing, up, unit }).sort());
 
   const line = 'reconstruct a.ply -o b.glb --flatness 0.001 --method paper --max-iterations 7 --norm diagonal --curvature-weight 0 ' +

@@ -25,6 +25,8 @@ for (const peer of ['@gltf-transform', 'meshoptimizer']) {
 }
 await writeFile(join(folder, 'package.json'), '{ "type": "module" }');
 for (const name of ['scan.ply', 'a.ply', 'b.ply']) await writeFile(join(folder, name), scan);
+await mkdir(join(folder, 'scans'));
+await writeFile(join(folder, 'scans/scan.ply'), scan);
 await writeFile(join(folder, 'good.xyz'), '0 0 0\n1 0 0\n0 1 0\n0 0 1\n');
 
 /** Runs a module in a folder that holds a scan. */

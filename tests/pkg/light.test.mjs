@@ -10,7 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { WebIO } from '@gltf-transform/core';
 import { validateBytes } from 'gltf-validator';
-import { createEngine, flip, read, reconstruct, simplify, texture, write } from 'pointweave';
+import { createEngine, flip, poster, read, reconstruct, simplify, texture, write } from 'pointweave';
 import { load } from 'pointweave/core';
 import { sphere } from './support.mjs';
 
@@ -142,4 +142,54 @@ test('the command line makes meshes light, and textures them', async (t) => {
     [['reconstruct', 'scan.ply', '-o', 'x.ply', '--texture', '128'], /GLB and USDZ/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--maps', 'color'], /--texture/],
     [['simplify', 'mesh.ply', '-o', 'x.glb', '--triangles', '0'], /at least 1/],
   ]) await assert.rejects(pointweave(...args), ({ stderr }) => words.test(stderr), args.join(' '));
+});
+
+test('a poster is a picture of a cloud or a mesh, the same by every way; a file has its pictures', async () => {
+  const textured = await reconstruct(scan, { reduce: false, triangles: 300, texture: { size: 64 } });
+  const options = { size: [160, 120], camera: '30deg 70deg 120%', background: '#203040' };
+  const { width, height, type, data } = await poster(textured, options);
+  assert.deepEqual([width, height, type, String.fromCharCode(...data.subarray(1, 4))], [160, 120, 'image/png', 'PNG']);
+  const core = await load();
+  assert.deepEqual((await core.poster(textured, options)).data, data);
+  const engine = await createEngine({ threads: 2 });
+  assert.deepEqual((await engine.poster(textured, options)).data, data);
+  await engine.dispose();
+  const other = await poster(textured, { ...options, camera: 'auto auto auto' });
+  assert.notDeepEqual(other.data, data);
+  assert.notDeepEqual((await poster({ ...textured, uvs: undefined, textures: undefined }, options)).data, data);
+  assert.ok((await poster(scan, { size: [64, 48] })).data.length > 500);
+  for (const wrong of [{ size: [8, 8] }, { size: '64x64' }, { camera: '30 70 120%' }, { camera: '30deg 70deg' }, { camera: '1deg 1deg 0%' }, { background: 'red' }]) {
+    await assert.rejects(poster(scan, wrong), { code: 'bad-option' });
+  }
+  const folder = await mkdtemp(join(tmpdir(), 'poster-'));
+  const [glb, png] = ['mesh.glb', 'poster.png'].map((name) => join(folder, name));
+  await writeFile(glb, await write(textured, { format: 'glb', up: 'z' }));
+  const { stdout } = await run(process.execPath, [CLI, 'poster', glb, '-o', png, '--up', 'z', '--size', '160x120', '--camera', '30deg,70deg,120%', '--background', '#203040', '--json']);
+  assert.deepEqual(JSON.parse(stdout), { width: 160, height: 120, bytes: data.length });
+  assert.deepEqual(await readFile(png), Buffer.from(data));
+  await rm(folder, { recursive: true });
+});
+
+test('lods are several meshes of one reconstruction, and several files; a textured one is an archive, too', async () => {
+  const near = await reconstruct(scan, { reduce: false, lods: [500, 200, 60], texture: { size: 64 } });
+  const meshes = [near, ...near.lods];
+  assert.ok(meshes.every(({ report, indices }) => report.triangles === indices.length / 3));
+  assert.deepEqual(near.indices, (await reconstruct(scan, { reduce: false, triangles: 500, texture: { size: 64 } })).indices);
+  const [most, middle, least] = meshes.map(({ indices }) => indices.length / 3);
+  assert.ok(most <= 500 && middle <= 200 && middle >= 196 && least <= 60, `${most} ${middle} ${least}`);
+  assert.ok(meshes.every(({ textures, uvs, positions }) => textures.color && uvs.length / 2 === positions.length / 3));
+  for (const wrong of [{ lods: [] }, { lods: [100, 200] }, { lods: [100], triangles: 100 }]) await assert.rejects(reconstruct(scan, wrong), { code: 'bad-option' });
+
+  const back = await read(await write(near, { format: 'zip' }), { name: 'model.zip', faces: 'mesh' });
+  assert.deepEqual([back.indices.length, back.positions.length], [near.indices.length, near.positions.length]);
+  const glb = await read(await write(near, { format: 'glb' }), { faces: 'mesh' });
+  const off = Math.max(...back.colors.map((value, i) => Math.abs(value - glb.colors[i])));
+  assert.ok(off <= 1, `its picture lies as in a GLB file: ${off}`);
+
+  const folder = await mkdtemp(join(tmpdir(), 'lods-'));
+  await writeFile(join(folder, 'scan.ply'), await write(scan, { format: 'ply' }));
+  await run(process.execPath, [CLI, 'reconstruct', join(folder, 'scan.ply'), '-o', join(folder, 'a.glb'), '--no-reduce', '--lods', '300,100', '--texture', '64']);
+  const counts = await Promise.all(['a.glb', 'a.lod1.glb'].map(async (name) => (await read(await readFile(join(folder, name)), { faces: 'mesh' })).indices.length / 3));
+  assert.ok(counts[0] <= 300 && counts[0] >= 294 && counts[1] <= 100 && counts[1] >= 98, `${counts}`);
+  await rm(folder, { recursive: true });
 });

@@ -95,7 +95,7 @@ test('what is not called is left out of a bundle, and the worker is not', async 
  */
 const ELEMENT = { element: 14_400, viewer: 163_000, glb: 165_000 };
 /** Most bytes of `element.min.js`, gzipped. */
-const FILE = 229_000;
+const FILE = 231_000;
 
 test('the element is not larger than its budget', async (t) => {
   const { outputFiles, metafile: { outputs } } = await build({
@@ -133,7 +133,7 @@ test('the element in one file is not larger than its budget, and names nothing t
 /** Most bytes of each part, gzipped: about one per cent more than it has. */
 const BUDGET = {
   single: 386_000, threads: 431_000, files: 188_000, las: 121_000, e57: 148_000, packed: 252_000, pictures: 174_000,
-  exports: 220_000, prepare: 178_000, light: 262_000, samples: 44_000, script: 21_200,
+  exports: 220_000, prepare: 178_000, light: 323_000, samples: 44_000, script: 22_300,
 };
 
 test('nothing is larger than its budget', async () => {

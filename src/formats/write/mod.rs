@@ -7,6 +7,8 @@ mod local;
 mod names;
 mod obj;
 #[cfg(feature = "exports")]
+mod obj_zip;
+#[cfg(feature = "exports")]
 mod pcd;
 mod ply;
 mod stand;
@@ -53,6 +55,9 @@ pub enum Output {
     /// USDZ: everything, single precision around an origin in double precision.
     #[cfg(feature = "exports")]
     Usdz,
+    /// A ZIP archive of an OBJ file, its material library and its pictures.
+    #[cfg(feature = "exports")]
+    Zip,
 }
 
 impl Output {
@@ -73,6 +78,8 @@ impl Output {
         Output::ThreeMf,
         #[cfg(feature = "exports")]
         Output::Usdz,
+        #[cfg(feature = "exports")]
+        Output::Zip,
     ];
 
     /// Lower-case name, as `format` in the JS interface and as the extension of files.
@@ -93,6 +100,8 @@ impl Output {
             Output::ThreeMf => "3mf",
             #[cfg(feature = "exports")]
             Output::Usdz => "usdz",
+            #[cfg(feature = "exports")]
+            Output::Zip => "zip",
         }
     }
 
@@ -169,7 +178,9 @@ pub fn write(
         Output::Ply => Ok(ply::write(cloud, triangles, options.ascii)),
         Output::Xyz => Ok(xyz::write(cloud)),
         Output::Glb => glb::write(cloud, triangles, options.quantize),
-        Output::Obj => Ok(obj::write(cloud, triangles)),
+        Output::Obj => Ok(obj::write(cloud, triangles, None)),
+        #[cfg(feature = "exports")]
+        Output::Zip => obj_zip::write(cloud, triangles),
         Output::Stl => stl::write(cloud, triangles.ok_or(Error::NeedsTriangles)?),
         #[cfg(feature = "exports")]
         Output::Pcd => Ok(pcd::write(cloud)),
