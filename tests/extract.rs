@@ -115,6 +115,7 @@ const SMOOTH: ExtractParams = ExtractParams {
     max_hole: MaxHole::Auto,
     sharp: false,
     most: None,
+    grain: 0.0,
 };
 const SHARP: ExtractParams = ExtractParams {
     sharp: true,
@@ -457,6 +458,7 @@ fn noise_is_manifold() {
                     max_hole: MaxHole::Auto,
                     sharp,
                     most,
+                    grain: 0.0,
                 };
                 let all = check(
                     &Analytic {
