@@ -172,8 +172,8 @@ export interface ReconstructOptions {
   /** Keep creases in the mesh. Default `true`. */
   sharp?: boolean;
   /**
-   * Take the grain that noise left out of the mesh: no vertex moves farther than the noise, and creases stay. Default
-   * `true`.
+   * Take the grain that noise left out of the mesh. No vertex moves farther than twice the noise of the fitted points;
+   * creases stay, and so does relief that is more than noise. Default `true`.
    */
   fairing?: boolean;
   /**

@@ -115,7 +115,7 @@ const SMOOTH: ExtractParams = ExtractParams {
     max_hole: MaxHole::Auto,
     sharp: false,
     most: None,
-    grain: 0.0,
+    fairing: false,
 };
 const SHARP: ExtractParams = ExtractParams {
     sharp: true,
@@ -458,7 +458,7 @@ fn noise_is_manifold() {
                     max_hole: MaxHole::Auto,
                     sharp,
                     most,
-                    grain: 0.0,
+                    fairing: false,
                 };
                 let all = check(
                     &Analytic {

@@ -78,8 +78,8 @@ pub struct ExtractParams {
     /// Edges are collapsed where the surface is flat until no more triangles are left than this, as far as the mesh
     /// stays manifold and well shaped; `None`: all that the lattice makes.
     pub most: Option<usize>,
-    /// Standard deviation of the noise whose grain is taken out of the mesh, unit frame; 0 leaves it as it is.
-    pub grain: f32,
+    /// Take out the grain that the function's noise left.
+    pub fairing: bool,
 }
 
 /// What [`extract`] makes.
@@ -162,7 +162,9 @@ pub fn extract<F: Implicit>(
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
     }
-    fairing::fair(&mut mesh, params.grain);
+    if params.fairing {
+        fairing::fair(&mut mesh, field.noise() as f32);
+    }
     span(1.0)?;
     let mut extracted = Extracted::of(mesh, params.boundary);
     holes.extend(std::mem::take(&mut extracted.holes));

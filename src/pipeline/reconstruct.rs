@@ -208,7 +208,7 @@ fn surface(
         Some(few) => few.placed((&sites, &mut signs), (params.orient, params.boundary)),
         None => {
             let field = Field::new(&fits, &signs, &sites, &sensor);
-            let how = extract_params(&sites, noise.all, params);
+            let how = extract_params(&sites, params);
             extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
         }
     };
@@ -370,8 +370,8 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
     }
 }
 
-/// How the surface of these sites, whose points had this noise, is extracted.
-fn extract_params(sites: &Sites, noise: f32, params: &SurfaceParams) -> ExtractParams {
+/// How the surface of these sites is extracted.
+fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
     let resolution = match params.resolution {
         Resolution::Edge(edge) => edge,
         Resolution::Auto => {
@@ -393,6 +393,6 @@ fn extract_params(sites: &Sites, noise: f32, params: &SurfaceParams) -> ExtractP
         sharp: params.sharp,
         most: (params.resolution == Resolution::Auto)
             .then(|| (TRIANGLES * sites.tree.points.len()).max(params.triangles.unwrap_or(0))),
-        grain: if params.fairing { noise } else { 0.0 },
+        fairing: params.fairing,
     }
 }
