@@ -172,6 +172,11 @@ export interface ReconstructOptions {
   /** Keep creases in the mesh. Default `true`. */
   sharp?: boolean;
   /**
+   * Take the grain that noise left out of the mesh. No vertex moves farther than twice the noise of the fitted points;
+   * creases stay, and so does relief that is more than noise. Default `true`.
+   */
+  fairing?: boolean;
+  /**
    * What happens where there were no points.
    * - `'auto'` (default): Holes up to `maxHole` are closed, open sheets stay open.
    * - `'closed'`: As `'open'`, and every rim is capped by a membrane, which is flat where the rim is.

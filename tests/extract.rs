@@ -115,6 +115,7 @@ const SMOOTH: ExtractParams = ExtractParams {
     max_hole: MaxHole::Auto,
     sharp: false,
     most: None,
+    fairing: false,
 };
 const SHARP: ExtractParams = ExtractParams {
     sharp: true,
@@ -457,6 +458,7 @@ fn noise_is_manifold() {
                     max_hole: MaxHole::Auto,
                     sharp,
                     most,
+                    fairing: false,
                 };
                 let all = check(
                     &Analytic {

@@ -8,6 +8,7 @@ use pointweave::base::params::{Boundary, COLORS, Carry, Kernel, Propagation, Tar
 use pointweave::base::progress::Silent;
 use pointweave::report::distance::mesh_distance;
 use pointweave::report::{area, topology, volume};
+use pointweave::samples::{Model, sample};
 use pointweave::{Cloud, Error, ReduceParams, Stage, Surface, SurfaceParams, reconstruct};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -309,6 +310,47 @@ fn creases_and_corners_are_in_the_mesh() {
             kept < most && kept < 0.75 * rounded,
             "{k}: {kept} of {rounded} spacings"
         );
+    }
+}
+
+/// Mean angle of the triangles to the true surface by area, in degrees, and mean distance, in diagonals.
+fn grain_of(model: Model, s: &Surface) -> (f64, f64) {
+    let frame = &s.cloud.reduced.cloud.frame;
+    let at = |v: u32| DVec3::from_array(frame.to_caller(s.mesh.vertices[v as usize]));
+    let mut sums = DVec3::ZERO;
+    for triangle in &s.mesh.triangles {
+        let [a, b, c] = triangle.map(at);
+        let (cross, middle) = ((b - a).cross(c - a), (a + b + c) / 3.0);
+        let gradient = model.gradient(middle);
+        let distance = model.distance(middle).abs() / frame.diagonal;
+        sums += cross.length() * DVec3::new(1.0, cross.angle_between(gradient), distance);
+    }
+    ((sums.y / sums.x).to_degrees(), sums.z / sums.x)
+}
+
+#[test]
+fn fairing_takes_the_grain_out_within_the_noise() {
+    for model in [Model::Duck, Model::Part] {
+        let cloud = Cloud::from_f32(&sample(model, 24_000, 5).positions).unwrap();
+        let mesh = |fairing| {
+            let params = SurfaceParams {
+                fairing,
+                ..Default::default()
+            };
+            reconstruct(&cloud, &params, &mut Silent).unwrap()
+        };
+        let (fair, grainy) = (mesh(true), mesh(false));
+        assert_eq!(fair.mesh.triangles, grainy.mesh.triangles);
+        let vertices = fair.mesh.vertices.iter().zip(&grainy.mesh.vertices);
+        let moved = vertices.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        let noise = fair.cloud.report.noise;
+        assert!(
+            (0.1..=2.0).contains(&(f64::from(moved) / noise)),
+            "{model:?}: {moved}"
+        );
+        let (fair, grainy) = (grain_of(model, &fair), grain_of(model, &grainy));
+        assert!(fair.0 < 0.85 * grainy.0, "{model:?}: {fair:?} {grainy:?}");
+        assert!(fair.1 < grainy.1, "{model:?}: {fair:?} {grainy:?}");
     }
 }
 

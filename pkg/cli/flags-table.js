@@ -29,6 +29,7 @@ export const FLAGS = {
   resolution: 'edge length of the mesh, a share of the diagonal',
   triangles: 'most triangles of the mesh',
   sharp: 'keep creases',
+  fairing: 'take the grain of noise out of the mesh',
   boundary: 'close the surface, or let it end where points do',
   maxHole: 'widest hole that is closed, a share of the diagonal',
   scatter: 'what becomes of foliage, dust and filled volumes',

@@ -39,6 +39,7 @@ export const RECONSTRUCT = {
   resolution: number(0.0001, 0.25, { or: 'auto', fallback: 'auto' }),
   triangles: integer(1, 0xffffffff),
   sharp: toggle(true),
+  fairing: toggle(true),
   boundary: choice('auto', 'closed', 'open'),
   maxHole: number(0, 1, { or: 'auto', fallback: 'auto' }),
   scatter: choice('drop', 'keep'),

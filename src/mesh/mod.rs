@@ -9,8 +9,9 @@
 //!    (see [`extract`]).
 //! 4. `straighten`: vertices on creases are moved onto the curves that several cells tell.
 //! 5. `simplify`: fewer triangles where the surface is flat.
-//! 6. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
-//! 7. `crossings`: triangles that cross each other are found and mended.
+//! 6. `fairing`: the grain that noise left goes, creases stay.
+//! 7. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 8. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
 //!
@@ -32,6 +33,7 @@ pub(crate) mod curves;
 pub(crate) mod crossings;
 pub(crate) mod disc;
 pub(crate) mod dual;
+pub(crate) mod fairing;
 pub(crate) mod few;
 pub mod field;
 pub(crate) mod flips;
@@ -76,6 +78,8 @@ pub struct ExtractParams {
     /// Edges are collapsed where the surface is flat until no more triangles are left than this, as far as the mesh
     /// stays manifold and well shaped; `None`: all that the lattice makes.
     pub most: Option<usize>,
+    /// Take out the grain that the function's noise left.
+    pub fairing: bool,
 }
 
 /// What [`extract`] makes.
@@ -157,6 +161,9 @@ pub fn extract<F: Implicit>(
     let mut span = span(progress, 0.75, 1.0);
     if let Some(most) = params.most {
         simplify(&mut mesh, &on_crease, most, params.resolution, &mut span)?;
+    }
+    if params.fairing {
+        fairing::fair(&mut mesh, field.noise() as f32);
     }
     span(1.0)?;
     let mut extracted = Extracted::of(mesh, params.boundary);

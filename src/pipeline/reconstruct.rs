@@ -393,5 +393,6 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
         sharp: params.sharp,
         most: (params.resolution == Resolution::Auto)
             .then(|| (TRIANGLES * sites.tree.points.len()).max(params.triangles.unwrap_or(0))),
+        fairing: params.fairing,
     }
 }

@@ -238,6 +238,10 @@ table! {
         /// Keep creases in the mesh.
         switch sharp: bool = true, flag("keep creases"),
             field("Keep creases sharp", "Edges and corners stay; without it they are rounded.");
+        /// Take the grain that noise left out of the mesh. No vertex moves farther than twice the noise of the fitted points; creases
+        /// stay, and so does relief that is more than noise.
+        switch fairing: bool = true, flag("take the grain of noise out of the mesh"),
+            field("Smooth the grain", "What noise left in the surface is smoothed away; edges stay.");
         choice boundary: Boundary = Boundary::Auto, flag("close the surface, or let it end where points do"),
             field("Holes", "What happens where nothing was scanned.");
         /// With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.

@@ -1,14 +1,15 @@
-//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [edges] [lines] [time] [million] [CLOUD.f32 …]`
+//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [edges] [lines] [grain] [time] [million] [CLOUD.f32 …]`
 //!
 //! What reconstruction promises, measured on generated clouds whose surface is known: which side is out, what is never
-//! allowed in a mesh, where open surfaces end, how near the mesh is to the truth and how many triangles it takes, and
-//! where the time goes. All sections run unless some are named; a promise that is not kept is marked with `<--`.
+//! allowed in a mesh, where open surfaces end, how near the mesh is to the truth and how many triangles it takes, how
+//! grainy it is, and where the time goes. All sections run unless some are named; a promise that is not kept is marked with `<--`.
 //! Raw clouds (`x y z` as f32) have no truth: their topology, ends and triangles are printed.
 
 mod accuracy;
 mod clouds;
 mod edges;
 mod ends;
+mod grain;
 mod lines;
 mod measure;
 #[path = "../../common/mesh.rs"]
@@ -50,6 +51,9 @@ fn main() -> io::Result<()> {
     }
     if is_asked("lines") {
         lines::run();
+    }
+    if is_asked("grain") {
+        grain::run();
     }
     for file in &files {
         topology::rows(file, &read(file)?);

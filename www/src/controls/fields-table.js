@@ -9,6 +9,7 @@ export const FIELDS = {
   orientation: { in: 'reconstruct', kind: 'choice', label: 'Outer side', hint: 'What decides which side of the surface is out.', choices: { auto: 'As the scan tells', up: 'Up: land, floors', outward: 'Outward: objects', inward: 'Inward: rooms' } },
   flip: { in: 'reconstruct', kind: 'flag', label: 'Flip', hint: 'The other side of everything is out.' },
   sharp: { in: 'reconstruct', kind: 'flag', label: 'Keep creases sharp', hint: 'Edges and corners stay; without it they are rounded.' },
+  fairing: { in: 'reconstruct', kind: 'flag', label: 'Smooth the grain', hint: 'What noise left in the surface is smoothed away; edges stay.' },
   boundary: { in: 'reconstruct', kind: 'choice', label: 'Holes', hint: 'What happens where nothing was scanned.', choices: { auto: 'Close small ones', closed: 'Close all', open: 'Leave open' } },
 };
 

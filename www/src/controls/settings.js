@@ -29,7 +29,7 @@ export const CONTROLS = /** @type {Record<string, Control>} */ (FIELDS);
 /** Where each is found: beside the points to keep, among more settings, or with those for experts. */
 export const PLACES = {
   plain: ['boundary', 'outliers'],
-  more: ['orientation', 'flip', 'sharp', 'smoothing'],
+  more: ['orientation', 'flip', 'sharp', 'fairing', 'smoothing'],
   expert: ['method', 'fuzzifier', 'accuracy'],
 };
 

@@ -255,6 +255,8 @@ export default {
   'The other side of everything is out.': 'Die andere Seite von allem ist außen.',
   'Keep creases sharp': 'Scharfe Kanten erhalten',
   'Edges and corners stay; without it they are rounded.': 'Kanten und Ecken bleiben; ohne wird abgerundet.',
+  'Smooth the grain': 'Körnung glätten',
+  'What noise left in the surface is smoothed away; edges stay.': 'Was das Rauschen auf der Fläche hinterließ, wird geglättet; Kanten bleiben.',
   'Holes': 'Löcher',
   'What happens where nothing was scanned.': 'Was geschieht, wo nichts gescannt wurde.',
   'Close small ones': 'Kleine schließen',

@@ -255,6 +255,8 @@ export default {
   'The other side of everything is out.': 'L’autre côté de tout est dehors.',
   'Keep creases sharp': 'Garder les arêtes vives',
   'Edges and corners stay; without it they are rounded.': 'Arêtes et coins restent ; sinon ils sont arrondis.',
+  'Smooth the grain': 'Lisser le grain',
+  'What noise left in the surface is smoothed away; edges stay.': 'Ce que le bruit a laissé sur la surface est lissé ; les arêtes restent.',
   'Holes': 'Trous',
   'What happens where nothing was scanned.': 'Ce qui se passe où rien n’a été scanné.',
   'Close small ones': 'Fermer les petits',
