@@ -290,8 +290,9 @@ export class Look {
     if (this.#viewer) this.#viewer.view = compared ? this.#split.view : view;
   }
 
-  /** Gives a layer the chosen colours, unless it has them. */
+  /** Gives a layer the chosen colours, unless it has them; a light model keeps its pictures. */
   #color(/** @type {View} */ view) {
+    if (view === 'light') return undefined;
     const known = this.#painted.get(view);
     const [layer, outcome] = view === 'kept' ? /** @type {const} */ (['mesh', this.#kept]) : [view, this.#outcome];
     const subject = this.#subjectOf(outcome);
