@@ -57,7 +57,9 @@ export async function make(engine, { read, own, cloud: said, steps }, path, fold
   const report = mesh.report;
   const labelled = /** @type {{ prepared?: { steps: StepReport[] } }} */ (mesh).prepared?.steps ?? [];
   const told = labelled.map(({ labels, ...step }) => step);
-  const doubts = [...reasonLines(told), ...doubtLines(report)];
+  // That the file is a mesh is no fault of the model.
+  const faults = { ...report, doubts: report.doubts.filter(({ code }) => code !== 'sampled-from-faces') };
+  const doubts = [...reasonLines(told), ...doubtLines(faults)];
   const seconds = (performance.now() - start) / 1000;
   const whole = { source: basename(path), file, model: { bytes: model.length, triangles: report.triangles }, doubts, steps: told, report, seconds };
   const files = { 'model.glb': model, ...levels, 'poster.png': poster.data, 'report.json': new TextEncoder().encode(`${JSON.stringify(whole, null, 2)}\n`) };
