@@ -32,7 +32,23 @@ export type DoubtCode =
   /** The coordinates were rounded to steps coarser than the points are apart. */
   | 'steps'
   /** x and y look like degrees and z like metres. */
-  | 'degrees-as-lengths';
+  | 'degrees-as-lengths'
+  /** Points are on scan lines much farther apart than the points of a line. */
+  | 'lines'
+  /** The file is a mesh: points were taken from its faces. */
+  | 'sampled-from-faces'
+  /** Points lie as in foliage, dust or a filled volume, with no surface through them. */
+  | 'scatter'
+  /** Walls are about as thin as the points are apart, or as the noise. */
+  | 'thin'
+  /** A part of the area is far from any point. */
+  | 'far-area'
+  /** The surface has many tunnels. */
+  | 'tunnels'
+  /** Triangles cross others. */
+  | 'self-intersections'
+  /** Pieces too small to be a surface were left out. */
+  | 'islands-dropped';
 
 /** What ran, where and for how long. */
 export interface RunReport {

@@ -9,6 +9,7 @@ import { FIELDS, TARGETS } from '../../www/src/controls/fields-table.js';
 import { SAMPLES } from '../../www/src/controls/samples.js';
 import { UNITS } from '../../www/src/controls/standing.js';
 import { NAMES as VIEWS, SIDES } from '../../www/src/look/names.js';
+import { DOUBTS } from '../../www/src/results/doubt-words.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
 import { STAGES } from '../../www/src/results/stages.js';
 import { ROLES } from '../../www/src/session/column-chooser.js';
@@ -41,7 +42,7 @@ function textsOfTables() {
   const { names, density, error, sharp } = PAINT_WORDS;
   return [
     ...fields, ...Object.values(TARGETS).map(({ label }) => label), ...Object.values(SAMPLES).map(({ title }) => title), ...Object.values(UNITS),
-    ...Object.values(VIEWS), ...Object.values(SIDES), ...Object.values(MESSAGES).flatMap(Object.values), ...Object.values(STAGES),
+    ...Object.values(VIEWS), ...Object.values(SIDES), ...Object.values(MESSAGES).flatMap(Object.values), ...Object.values(STAGES), ...Object.values(DOUBTS),
     ...ROLES.map(([, name]) => name), ...Object.values(FORMATS).flatMap(Object.values).flatMap(({ use, prints }) => [use, prints ?? '']), ...Object.values(NAMES),
     ...Object.values(PRESETS).flatMap(({ label, kinds }) => [label, ...kinds.map(({ use }) => use)]),
     ...Object.values(ACTIONS).flatMap(Object.values),

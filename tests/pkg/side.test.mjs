@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test from 'node:test';
@@ -174,6 +174,14 @@ test('up, outward and inward', async () => {
   assert.equal(room.report.boundaryEdges, 0);
   const inside = await reconstruct({ ...ball, viewpoints: { positions: Float64Array.of(0.1, 0, 0.2) } });
   assert.ok(facing(inside, outward) < 0.001);
+});
+
+test('the types have every code of a doubt, and no other', () => {
+  const text = (path) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
+  const [made] = text('src/report/knowledge.rs').split('#[cfg(test)]');
+  const codes = [...made.matchAll(/(?:code: |doubt\(\s*)"([a-z-]+)"/g)].map(([, code]) => code);
+  const typed = /type DoubtCode =([^;]*);/.exec(text('pkg/types.reports.d.ts'))[1].match(/(?<=')[a-z-]+/g);
+  assert.deepEqual(typed.toSorted(), codes.toSorted());
 });
 
 test('the report says what told the side, and doubts only what is doubtful', async () => {

@@ -1,5 +1,6 @@
 import { byId } from '../dom.js';
 import { copyText } from '../clipboard.js';
+import { doubtWords } from './doubt-words.js';
 import * as format from './format.js';
 import { stageWords } from './stages.js';
 import { say } from '../words/say.js';
@@ -76,7 +77,7 @@ export class Numbers {
     this.#set('components', mesh?.report.components, format.count);
     this.#set('peakMemoryBytes', report.peakMemoryBytes, format.bytes);
     this.#set('totalMs', report.totalMs, format.duration);
-    this.#doubt.textContent = report.doubts.map(({ message }) => message).join(' ');
+    this.#doubt.textContent = report.doubts.map(doubtWords).join(' ');
     this.#doubt.hidden = !this.#doubt.textContent;
     const { mean, rms, max } = report.distance;
     for (const [name, share] of Object.entries({ errorMean: mean, errorRms: rms, errorMax: max })) {

@@ -1,9 +1,11 @@
 import tidy from './de-tidy.js';
+import doubts from './de-doubts.js';
 import web from './de-web.js';
 
 /** The page's texts in German, by the English ones. @type {Record<string, string>} */
 export default {
   ...tidy,
+  ...doubts,
   ...web,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',
   'Skip to the controls': 'Zu den Einstellungen springen',

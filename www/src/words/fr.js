@@ -1,9 +1,11 @@
 import tidy from './fr-tidy.js';
+import doubts from './fr-doubts.js';
 import web from './fr-web.js';
 
 /** The page's texts in French, by the English ones. @type {Record<string, string>} */
 export default {
   ...tidy,
+  ...doubts,
   ...web,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave : un scan 3D devient un modèle léger et correct',
   'Skip to the controls': 'Aller aux réglages',
