@@ -341,13 +341,11 @@ fn fairing_takes_the_grain_out_within_the_noise() {
         };
         let (fair, grainy) = (mesh(true), mesh(false));
         assert_eq!(fair.mesh.triangles, grainy.mesh.triangles);
+        // But for the few whose triangles crossed others, which are mended apart.
         let vertices = fair.mesh.vertices.iter().zip(&grainy.mesh.vertices);
-        let moved = vertices.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        let noise = fair.cloud.report.noise;
-        assert!(
-            (0.1..=2.0).contains(&(f64::from(moved) / noise)),
-            "{model:?}: {moved}"
-        );
+        let noise = 2.0 * fair.cloud.report.noise;
+        let far = vertices.filter(|(a, b)| f64::from(a.distance(**b)) > noise);
+        assert!(far.count() <= fair.mesh.vertices.len() / 1000, "{model:?}");
         let (fair, grainy) = (grain_of(model, &fair), grain_of(model, &grainy));
         assert!(fair.0 < 0.85 * grainy.0, "{model:?}: {fair:?} {grainy:?}");
         assert!(fair.1 < grainy.1, "{model:?}: {fair:?} {grainy:?}");

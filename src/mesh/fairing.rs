@@ -30,8 +30,10 @@ const ALIKE: f32 = 1.0 / (0.8 * 0.8);
 const EXPLAINED: f32 = 1.5;
 /// Times that the squares of these differences are averaged over the triangles around.
 const SPREADS: usize = 3;
-/// A vertex moves so many standard deviations of the noise at most.
+/// A vertex moves so many standard deviations of the noise at most,
 const MOST_MOVED: f32 = 2.0;
+/// and this share of the mean distance of the triangles around it: nothing folds where noise is wider than triangles.
+const ASIDE: f32 = 0.25;
 /// Where filtering goes less far than this on average, noise explains next to nothing of the relief.
 const LEAST_STRENGTH: f32 = 0.15;
 
@@ -44,8 +46,11 @@ pub(crate) fn fair(mesh: &mut Mesh, noise: f32) {
         return;
     }
     let normals = filter.filtered(&strengths);
+    let most = |&t: &u32| (MOST_MOVED * noise).min(ASIDE * filter.scales[t as usize]);
+    let reach = |v| around.of(v).iter().map(most).fold(f32::INFINITY, f32::min);
+    let limits: Vec<f32> = (0..mesh.vertices.len() as u32).map(reach).collect();
     let areas = filter.areas;
-    mesh.vertices = moved(mesh, &around, &normals, MOST_MOVED * noise);
+    mesh.vertices = moved(mesh, &around, &normals, &limits);
     mesh.normals = par::map(
         mesh.vertices.len(),
         || (),
@@ -182,8 +187,8 @@ impl Filter<'_> {
     }
 }
 
-/// The vertices where the triangles around them have these normals, as far as that is no more than `most` away.
-fn moved(mesh: &Mesh, around: &VertexTriangles, normals: &[Vec3], most: f32) -> Vec<Vec3> {
+/// The vertices where the triangles around them have these normals, each no farther than its limit.
+fn moved(mesh: &Mesh, around: &VertexTriangles, normals: &[Vec3], limits: &[f32]) -> Vec<Vec3> {
     let mut vertices = mesh.vertices.clone();
     for _ in 0..MOVES {
         let offset = |(t, normal): (&[u32; 3], &Vec3)| {
@@ -200,7 +205,7 @@ fn moved(mesh: &Mesh, around: &VertexTriangles, normals: &[Vec3], most: f32) -> 
                     .map(|t| (offsets[t] - normals[t].dot(place)) * normals[t])
                     .sum();
                 let moved = place + step / triangles.len().max(1) as f32 - mesh.vertices[v];
-                mesh.vertices[v] + moved.clamp_length_max(most)
+                mesh.vertices[v] + moved.clamp_length_max(limits[v])
             },
         );
     }

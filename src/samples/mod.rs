@@ -4,7 +4,7 @@
 //! 1. `solid`: signed distances and what joins them; `toys` and `machined`: the solids that are made of these.
 //! 2. [`Model`]: which solid, how many points, and its truth: [`Model::distance`] says how far any point is from the surface.
 //! 3. `scanner`: rays from 20 poses on a turntable, noise along the ray, thinned to the number of points.
-//! 4. [`desk`]: the duck as one gets it, on a table, with a second thing, shadows, strays and uneven light.
+//! 4. [`desk()`]: the duck as one gets it, on a table, with a second thing, shadows, strays and uneven light.
 //!
 //! **In**: a model, a number of points, a seed, noise along the ray as a fraction of the diagonal. **Out**: a [`Sample`]: points in
 //! centimetres, y up, without normals, as a scanner gives them, and the truth beside each.
