@@ -1,6 +1,6 @@
 //! A mesh made light: fewer triangles, and how far it is then from what it was.
 //!
-//! 1. [`weld`] makes a mesh of any list of triangles.
+//! 1. [`weld()`] makes a mesh of any list of triangles.
 //! 2. `shrink` collapses edges by quadrics, with what `web` and `quadric` say of the mesh and of its planes.
 //! 3. `crossings` of [`crate::mesh`] mends triangles that cross since.
 //! 4. `carry` takes normals, colours and scalars from the nearest place of the mesh as it was.
