@@ -149,17 +149,12 @@ impl Build {
     }
 
     pub fn target_dir(self) -> PathBuf {
-        let folder = match self {
-            Self::Threads => "wasm-threads",
-            _ if self.is_beside() => "wasm-beside",
-            _ => "wasm-single",
+        let threads = if self == Self::Threads {
+            "threads"
+        } else {
+            "single"
         };
-        root().join("target").join(folder)
-    }
-
-    /// Whether it is made beside the others, after the build with threads: in a target folder of its own, as cargo locks one.
-    fn is_beside(self) -> bool {
-        matches!(self, Self::Exports | Self::Light)
+        root().join("target").join(format!("wasm-{threads}"))
     }
 
     /// `cargo <action>` for this build, release profile.
@@ -238,11 +233,11 @@ fn make(builds: &[Build]) -> Result<()> {
     options::write()?;
     let builder = Builder::ready()?;
     let begin = |build: Build| say(&format!("building wasm, {}", build.name()));
-    let (beside, others): (Vec<Build>, Vec<Build>) =
-        (builds.iter().copied()).partition(|&build| build == Build::Threads || build.is_beside());
-    // Two at once, in target folders of their own: the optimiser of a build takes one core.
+    let (threads, others): (Vec<Build>, Vec<Build>) =
+        (builds.iter().copied()).partition(|&build| build == Build::Threads);
+    // Two target folders, so two at once: the optimiser of a build takes one core.
     thread::scope(|scope| {
-        let beside = scope.spawn(|| builder.make_all(&beside, begin));
+        let beside = scope.spawn(|| builder.make_all(&threads, begin));
         let made = builder.make_all(&others, begin);
         beside.join().expect("no panic").and(made)
     })?;
