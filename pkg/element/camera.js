@@ -1,14 +1,8 @@
 /** Camera attributes in model-viewer's syntax, in a viewer's terms. What is not valid counts as not given. */
+import { ANGLES, LENGTHS, WHOLE, quantity } from '../engine/quantities.js';
 
 /** @import { Distance, Viewer } from '../viewer.js' */
 /** @import { Switched } from './switching.js' */
-
-/** The distance of the first look in per cent: at 100 % an object reaches to the edges, as a ball does in model-viewer. */
-const WHOLE = 110;
-/** Degrees. @type {Record<string, number>} */
-const ANGLES = { deg: 1, rad: 180 / Math.PI };
-/** Units of the file, which glTF says are metres. @type {Record<string, number>} */
-const LENGTHS = { m: 1, cm: 0.01, mm: 0.001 };
 
 /** @param {Viewer} viewer @param {Switched} asked */
 export function aim(viewer, asked) {
@@ -72,10 +66,4 @@ function length(word) {
 function reach(word) {
   const share = quantity(word, { '%': 1 / WHOLE });
   return share === undefined ? quantity(word, LENGTHS) : { share };
-}
-
-/** @param {string} word @param {Record<string, number>} units */
-function quantity(word, units) {
-  const [, digits, unit] = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)([a-z%]*)$/.exec(word) ?? [];
-  return digits !== undefined && Object.hasOwn(units, unit) ? Number(digits) * units[unit] : undefined;
 }

@@ -3,13 +3,8 @@ import { frameOf } from '../viewer/frame.js';
 import { likelyUp } from '../viewer/upright.js';
 import { direction } from './axes.js';
 import { resultArgument } from './clouds.js';
+import { ANGLES, LENGTHS, WHOLE, quantity } from './quantities.js';
 
-/** The distance of the default look in per cent, as in the element: at 100 % an object reaches to the edges. */
-const WHOLE = 110;
-/** @type {Record<string, number>} */
-const ANGLES = { deg: 1, rad: 180 / Math.PI };
-/** @type {Record<string, number>} */
-const LENGTHS = { m: 1, cm: 0.01, mm: 0.001 };
 /** @type {[number, number]} */
 const SIZE = [800, 600];
 
@@ -59,10 +54,4 @@ function settingsOf(what, { size: [width, height] = SIZE, camera = 'auto auto au
 /** @param {Uint8Array} data @param {{ width: number, height: number }} settings @returns {import('../types.js').Texture} */
 export function posterOf(data, { width, height }) {
   return { width, height, data, type: 'image/png' };
-}
-
-/** @param {string} word @param {Record<string, number>} units */
-function quantity(word, units) {
-  const [, digits, unit] = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)([a-z%]*)$/.exec(word) ?? [];
-  return digits !== undefined && Object.hasOwn(units, unit) ? Number(digits) * units[unit] : undefined;
 }

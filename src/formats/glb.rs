@@ -11,12 +11,12 @@ mod materials;
 mod scene;
 
 use super::colors::ColorRange;
-use super::faces::srgb;
 use super::faces::triangles::{Face, Faces, NONE};
 use super::input::Input;
 use super::parser::{Parser, Step};
 use super::table::{Columns, Table};
 use crate::base::error::Result;
+use crate::base::srgb::srgb;
 use accessor::Accessor;
 use materials::Placing;
 use scene::{Document, Placed};

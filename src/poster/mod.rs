@@ -29,8 +29,10 @@ mod triangles;
 use crate::base::error::{Error, Result};
 use crate::base::par;
 use crate::base::progress::{Progress, Stage};
+use crate::texture::picture::png;
 use camera::Camera;
 use glam::DVec3;
+use png::ColorType;
 use strip::Strip;
 
 pub use camera::{Reach, View};
@@ -124,5 +126,9 @@ pub fn poster(
             strip.pixels(params.background)
         },
     )?;
-    picture::encode(&rows.concat(), params.size, params.background.is_none())
+    let color = match params.background {
+        Some(_) => ColorType::Rgb,
+        None => ColorType::Rgba,
+    };
+    png(&rows.concat(), params.size, color)
 }

@@ -1,6 +1,4 @@
-//! PNG files: textures on their way in, posters on their way out.
-
-use crate::base::error::{Error, Result};
+//! The pictures of a mesh, out of PNG files.
 
 /// A picture with its smaller copies, each of half the size.
 pub(super) struct Mipmaps {
@@ -119,25 +117,4 @@ impl Level {
         [0, 1, 2]
             .map(|k| (1.0 - t) * ((1.0 - s) * a[k] + s * b[k]) + t * ((1.0 - s) * c[k] + s * d[k]))
     }
-}
-
-/// A file of 8 bits a channel.
-///
-/// # Errors
-/// [`Error::Internal`].
-pub(super) fn encode(pixels: &[u8], [width, height]: [usize; 2], alpha: bool) -> Result<Vec<u8>> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
-    encoder.set_color(if alpha {
-        png::ColorType::Rgba
-    } else {
-        png::ColorType::Rgb
-    });
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
-    let failed = |error: png::EncodingError| Error::Internal(format!("no PNG: {error}"));
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(pixels).map_err(failed)?;
-    writer.finish().map_err(failed)?;
-    Ok(file)
 }

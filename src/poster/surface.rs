@@ -6,6 +6,7 @@ use super::scene::Scene;
 use super::strip::SAMPLES;
 use super::studio::Studio;
 use super::triangles::Placed;
+use crate::base::srgb::{self, srgb};
 use glam::{DMat3, DVec3};
 
 /// Of the material: `formats/write/glb.rs`.
@@ -39,7 +40,7 @@ impl<'a> Surface<'a> {
             Some(normals) => normals.iter().map(|n| stand * n.as_dvec3()).collect(),
             None => normals(points, corners),
         };
-        let linear: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
+        let linear: [f64; 256] = std::array::from_fn(|byte| srgb::linear(byte as f64 / 255.0));
         let colors = scene.colors.unwrap_or_default().iter();
         let turned = |t: &[f32; 4]| {
             let along = DVec3::new(t[0].into(), t[1].into(), t[2].into());
@@ -64,7 +65,9 @@ impl<'a> Surface<'a> {
                 .map(|c| c.map(|byte| linear[usize::from(byte)]))
                 .collect(),
             uvs: scene.uvs,
-            color: picture(scene.color, |byte| self::linear(byte) as f32),
+            color: picture(scene.color, |byte| {
+                srgb::linear(f64::from(byte) / 255.0) as f32
+            }),
             relief: picture(relief, |byte| f32::from(byte) / 127.5 - 1.0),
             tangents,
             matt: Studio::of(1.0),
@@ -177,24 +180,7 @@ fn shown(light: [f64; 3]) -> [u8; 3] {
         let white = 1.0 - 1.0 / (DESATURATION * (peak - pressed) + 1.0);
         color = color.map(|c| (1.0 - white) * c * pressed / peak + white * pressed);
     }
-    color.map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        let srgb = if c <= 0.003_130_8 {
-            12.92 * c
-        } else {
-            1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
-        };
-        (255.0 * srgb).round() as u8
-    })
-}
-
-fn linear(byte: u8) -> f64 {
-    let srgb = f64::from(byte) / 255.0;
-    if srgb <= 0.04045 {
-        srgb / 12.92
-    } else {
-        libm::pow((srgb + 0.055) / 1.055, 2.4)
-    }
+    color.map(|c| (255.0 * srgb(c.clamp(0.0, 1.0))).round() as u8)
 }
 
 /// The mean of the triangles' normals at each vertex, weighted by area.

@@ -20,7 +20,7 @@
 
 mod color;
 mod fill;
-mod picture;
+pub(crate) mod picture;
 mod relief;
 mod tangents;
 mod texels;
@@ -142,11 +142,13 @@ pub fn bake(
             }
         };
         let filled = fill::fill(pixels, [width, height]);
+        let values = filled.as_flattened().iter();
+        let bytes: Vec<u8> = values.map(|x| x.round() as u8).collect();
         textures.push(Texture {
             map,
             width,
             height,
-            png: picture::png(&filled, [width, height])?,
+            png: picture::png(&bytes, [width, height], png::ColorType::Rgb)?,
         });
     }
     tell(0.95, 1.0, 1.0)?;

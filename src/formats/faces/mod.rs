@@ -20,8 +20,6 @@ use super::table::{Columns, Table};
 pub use looks::Picture;
 use normals::CornerNormals;
 use paint::Painter;
-#[cfg(feature = "packed")]
-pub(super) use paint::srgb;
 pub use sampling::Sampling;
 use triangles::Faces;
 pub use triangles::Want;

@@ -2,6 +2,7 @@
 
 use super::looks::{Look, Picture, Texture, Wrap};
 use super::triangles::{Faces, NONE, Source};
+use crate::base::srgb::{linear, srgb};
 use crate::formats::raw_cloud::RawCloud;
 use crate::formats::text::words;
 
@@ -122,23 +123,6 @@ fn open<'a>(faces: &'a Faces, texture: &Texture) -> Option<&'a Picture> {
     match faces.pictures.get(texture.picture) {
         Some(Source::Open(picture)) => Some(picture),
         _ => None,
-    }
-}
-
-/// A share of linear light as a share of the display's scale (IEC 61966-2-1), and back.
-pub(in crate::formats) fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
-}
-
-fn linear(srgb: f64) -> f64 {
-    if srgb <= 0.04045 {
-        srgb / 12.92
-    } else {
-        libm::pow((srgb + 0.055) / 1.055, 2.4)
     }
 }
 

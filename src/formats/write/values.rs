@@ -1,5 +1,6 @@
 //! The values of one point of a cloud, as writers take them.
 
+use crate::base::srgb;
 use crate::formats::raw_cloud::{Positions, RawCloud};
 
 /// Whether world coordinates need double precision.
@@ -22,10 +23,5 @@ pub(super) fn triple<T>(array: &Option<Vec<T>>, i: usize) -> &[T] {
 
 /// An sRGB component in linear light, 0 to 1 (IEC 61966-2-1).
 pub(super) fn linear(component: u8) -> f64 {
-    let x = f64::from(component) / 255.0;
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        libm::pow((x + 0.055) / 1.055, 2.4)
-    }
+    srgb::linear(f64::from(component) / 255.0)
 }
