@@ -40,7 +40,7 @@ def reduce_many(
     storage = storage_options or {}
     flags = flags_of("reduce", f"out.{format}", options)
     scans = scans_in(inputs, storage)
-    store = Store(output, storage)
+    store = Store.at(output, storage)
     jobs = [
         Job("reduce", result, _reduce, (store, scan, result, flags, resume), alone=True)
         for result, scan in _results(scans, format).items()
@@ -78,5 +78,6 @@ def _reduce(store: Store, scan: Scan, result: str, flags: Flags, resume: bool) -
 
 def _entry(scan: Scan, result: str, done: Any) -> dict[str, Any]:
     if isinstance(done, PointweaveError):
-        return {"input": scan.url, "error": {"code": done.code, "message": done.message}}
+        message = done.message.removeprefix(f"{scan.name}: ")
+        return {"input": scan.url, "error": {"code": done.code, "message": message}}
     return {"input": scan.url, "output": result, "report": done}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterable
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from distributed import Client
@@ -43,7 +43,7 @@ def catalogue(
     flags = flags_of("catalogue", "out", {"title": title, **options})
     scans = scans_in(inputs, storage)
     names = npm.ask("names", [scan.name for scan in scans])
-    store = Store(output, storage)
+    store = Store.at(output, storage)
     known = _known(store)
     jobs = [
         Job("catalogue", name, _make, (store, scan, name, flags, known.get(name)), alone=True)
@@ -68,7 +68,7 @@ def _known(store: Store) -> dict[str, dict[str, Any]]:
 
 def _make(store: Store, scan: Scan, name: str, flags: Flags, known: dict[str, Any] | None) -> dict[str, Any]:
     """One scan as a site of its own. The command line itself says whether what is known of it still holds."""
-    own = npm.ask("names", [scan.name])[0]  # its name where no other scan wants the same
+    own = npm.ask("names", [PurePosixPath(scan.name).name])[0]  # its folder where it is the only scan
     with scratch() as folder:
         site = folder / "out"
         site.mkdir()
@@ -78,18 +78,19 @@ def _make(store: Store, scan: Scan, name: str, flags: Flags, known: dict[str, An
             (site / MANIFEST).write_text(json.dumps([{**known, "name": own}]), encoding="utf-8")
         bring(scan, store.options, folder / "in")
         try:
-            npm.pointweave(["catalogue", ".", "-o", "../out", "--threads=1", *flags.laid(folder / "in")], folder / "in")
+            npm.pointweave(["catalogue", scan.name, "-o", "../out", "--threads=1", *flags.laid(folder / "in")], folder / "in")
         except PointweaveError as error:
             if error.code != "failed" or not (site / MANIFEST).exists():
                 raise
-        entry: dict[str, Any] = {**json.loads((site / MANIFEST).read_text(encoding="utf-8"))[0], "name": name}
+        told = json.loads((site / MANIFEST).read_text(encoding="utf-8"))[0]
+        entry: dict[str, Any] = {**told, "name": name, "source": scan.name}
         if entry == known:
             return entry
         _rename(site, own, name)
-        told = f"{ENTRIES}/{name}.json"
-        (site / told).parent.mkdir(parents=True)
-        (site / told).write_text(json.dumps(entry), encoding="utf-8")
-        store.put([*_files(entry), told], site)
+        path = f"{ENTRIES}/{name}.json"
+        (site / path).parent.mkdir(parents=True)
+        (site / path).write_text(json.dumps(entry), encoding="utf-8")
+        store.put([*_files(entry), path], site)
         for stale in set(_files(known) if known else []) - set(_files(entry)):
             store.remove(stale)
         return entry

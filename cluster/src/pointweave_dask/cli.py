@@ -34,8 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         if not words or words[0] not in COMMANDS:
             return _overview(words)
         command = words.pop(0)
-        said = vars(_parser(command).parse_intermixed_args(words))
-        with _client(said.pop("scheduler"), said.pop("jobs")) as client:
+        typed = vars(_parser(command).parse_intermixed_args(words))
+        said = {name: value for name, value in typed.items() if value is not None}
+        with _client(said.pop("scheduler", None), said.pop("jobs", None)) as client:
             return _run(command, client, said)
     except PointweaveError as error:
         _say(error.message)

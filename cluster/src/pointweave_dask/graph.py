@@ -48,18 +48,18 @@ def run(client: Client, jobs: Sequence[Job], retries: int, progress: Progress | 
         key = (*job.key, run_id)
         futures[job.key] = client.submit(_call, npm.version(), job, before, key=key, retries=retries, pure=False)
     try:
-        return dict(_finished(jobs, futures, progress))
+        return dict(_finished(client, jobs, futures, progress))
     finally:
         client.cancel(list(futures.values()))
 
 
 def _finished(
-    jobs: Sequence[Job], futures: dict[tuple[str, str], Future], progress: Progress | None
+    client: Client, jobs: Sequence[Job], futures: dict[tuple[str, str], Future], progress: Progress | None
 ) -> Iterator[tuple[tuple[str, str], Any]]:
     """Jobs and what they returned, as they end."""
     by_future = {futures[job.key].key: job for job in jobs}
     totals, done = Counter(job.stage for job in jobs), Counter[str]()
-    for future in as_completed(futures.values()):
+    for future in as_completed(futures.values(), loop=client.loop):
         job = by_future[future.key]
         try:
             result = future.result()

@@ -73,10 +73,11 @@ def _run(arguments: list[str], folder: Path | None, given: str = "") -> str:
 
 
 def _sentence(words: str, status: int) -> str:
-    """The last line that the command line said, or the last of a Node that broke down."""
-    lines = [line for line in words.splitlines() if line.strip()]
+    """The last line that the command line said; of a Node that broke down, the line that names an error, or the last one."""
+    lines = [line.strip() for line in words.splitlines() if line.strip()]
     said = [line.removeprefix("pointweave: ") for line in lines if line.startswith("pointweave: ")]
-    return (said or lines or [f"Node ended with status {status}"])[-1]
+    errors = [line for line in lines if re.match(r"\w*Error\b", line) or line.startswith("FATAL")]
+    return (said or errors[:1] or lines or [f"Node ended with status {status}"])[-1]
 
 
 def _described() -> dict[str, Any]:

@@ -11,7 +11,7 @@ from fsspec.core import split_protocol
 
 from . import npm
 from .errors import PointweaveError
-from .store import StorageOptions, is_local, open_url
+from .store import StorageOptions, is_local, open_url, tried
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,13 @@ def _scans_of(url: str, options: StorageOptions) -> list[Scan]:
         return [Scan(url, basename(url))]
     fs, path = open_url(url, options)
     if any(mark in path for mark in "*?["):
-        return [Scan(fs.unstrip_protocol(file), basename(file)) for file in sorted(fs.glob(path))]
-    if not fs.isdir(path):
-        return [Scan(fs.unstrip_protocol(path), basename(path))]
-    names = sorted(file[len(path) + 1 :] for file in fs.find(path))
-    return [Scan(fs.unstrip_protocol(f"{path}/{name}"), name) for name in npm.ask("scans", names)]
+        names = {file: basename(file) for file in sorted(tried(fs.glob, path))}
+    elif tried(fs.isdir, path):
+        within = sorted(file[len(path) + 1 :] for file in tried(fs.find, path))
+        names = {f"{path}/{name}": name for name in npm.ask("scans", within)}
+    else:
+        names = {path: basename(path)}
+    return [Scan(file if is_local(fs) else fs.unstrip_protocol(file), name) for file, name in names.items()]
 
 
 def bring(scan: Scan, options: StorageOptions, folder: Path) -> None:
@@ -49,7 +51,7 @@ def bring(scan: Scan, options: StorageOptions, folder: Path) -> None:
     local.parent.mkdir(parents=True, exist_ok=True)
     try:
         if not is_local(fs):
-            fs.get_file(path, str(local))
+            tried(fs.get_file, path, str(local))
         elif fs.exists(path):
             local.symlink_to(path)
         else:

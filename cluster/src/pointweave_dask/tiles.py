@@ -48,7 +48,7 @@ def tiles(
     storage = storage_options or {}
     flags = flags_of("tiles", "out", options)
     scans = sorted(scans_in(inputs, storage), key=lambda scan: scan.url)
-    store = Store(output, storage)
+    store = Store.at(output, storage)
     if not resume:
         store.remove(WORK)
 
@@ -62,7 +62,7 @@ def tiles(
     counted = run(client, count, retries, progress)
     failures = {name: error for (_, name), error in counted.items() if isinstance(error, PointweaveError)}
     if failures:
-        lines = [f"{name}: {error.message}" for name, error in sorted(failures.items())]
+        lines = [f"{name}: {error.message.removeprefix(f'{name}: ')}" for name, error in sorted(failures.items())]
         raise PointweaveError(next(iter(failures.values())).code, "\n".join(lines))
 
     plan = Job("plan", "all", _plan, (store, list(counts), scans, flags))
