@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import Any
 
 from distributed import Client, LocalCluster
@@ -96,10 +97,11 @@ def _client(scheduler: str | None, jobs: int | None) -> Iterator[Client]:
             yield client
         return
     workers = jobs or os.cpu_count() or 1
-    with (
-        LocalCluster(n_workers=workers, threads_per_worker=1, silence_logs=logging.CRITICAL) as cluster,
-        Client(cluster) as client,
-    ):
+    # On loopback alone, and at a port that is free.
+    local = {"dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
+    with LocalCluster(n_workers=workers, threads_per_worker=1, **local) as cluster, Client(cluster) as client:
+        if find_spec("bokeh") is not None:
+            _say(f"dashboard at {cluster.dashboard_link}")
         yield client
 
 
