@@ -50,4 +50,4 @@ def client(cluster: LocalCluster) -> Iterator[Client]:
 def contents(folder: Path) -> dict[str, bytes]:
     """Files of a folder by path, without those of the work."""
     files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
-    return {name: path.read_bytes() for name, path in files.items() if not name.startswith("work/")}
+    return {name: path.read_bytes() for name, path in files.items() if not name.startswith(("work/", ".pointweave/"))}

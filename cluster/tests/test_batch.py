@@ -58,7 +58,7 @@ def test_a_catalogue_as_by_the_plain_command_line(client: Client, shelf: Path, t
     entries = catalogue(client, str(shelf), str(site), triangles=500)
     assert [entry["name"] for entry in entries] == ["bad", "deep-ball", "deep-ball-xyz"]
     assert untimed(contents(site)) == untimed(contents(tmp_path / "plain"))
-    assert not (site / "work").exists()
+    assert not (site / ".pointweave").exists()
 
     before = {path: path.stat().st_mtime_ns for path in site.glob("*/*")}
     (shelf / "deep/ball.xyz").rename(tmp_path / "ball.xyz")

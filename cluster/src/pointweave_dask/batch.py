@@ -15,7 +15,7 @@ from .graph import Job, Progress, run
 from .options import Flags, flags_of
 from .scans import Scan, bring, scans_in
 from .scratch import scratch
-from .store import WORK, StorageOptions, Store
+from .store import ASIDE, StorageOptions, Store
 
 
 def reduce_many(
@@ -46,7 +46,7 @@ def reduce_many(
         for result, scan in _results(scans, format).items()
     ]
     done = run(client, jobs, retries, progress)
-    store.remove(WORK)
+    store.remove(ASIDE)
     return [_entry(scan, job.name, done[job.key]) for scan, job in zip(scans, jobs, strict=True)]
 
 

@@ -16,10 +16,10 @@ from .graph import Job, Progress, run
 from .options import Flags, flags_of
 from .scans import Scan, bring, scans_in
 from .scratch import scratch
-from .store import WORK, StorageOptions, Store
+from .store import ASIDE, StorageOptions, Store
 
 MANIFEST = "catalogue.json"
-ENTRIES = f"{WORK}/entries"
+ENTRIES = f"{ASIDE}/entries"
 
 
 def catalogue(
@@ -52,7 +52,7 @@ def catalogue(
     done = run(client, jobs, retries, progress)
     entries = [_entry(scan, job.name, done[job.key]) for scan, job in zip(scans, jobs, strict=True)]
     _pages(store, title, entries)
-    for gone in [*(known.keys() - set(names)), WORK]:
+    for gone in [*(known.keys() - set(names)), ASIDE]:
         store.remove(gone)
     return entries
 

@@ -14,7 +14,7 @@ class PointweaveError(Exception):
     - ``worker-lost``: a task's worker died more often than Dask tries again;
     - ``store``: files could not be read or written, after all retries;
     - ``cancelled``: the scheduler dropped the work, or is gone;
-    - ``version``: a worker has another version of this package;
+    - ``version``: the scheduler or a worker has another version of this package or of Dask, or none;
     - ``no-node``, ``no-package``: Node or the npm package is not there.
     """
 

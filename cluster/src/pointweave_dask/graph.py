@@ -17,6 +17,9 @@ from .errors import PointweaveError
 #: Called with a stage, how many of its jobs are done, and how many it has.
 Progress = Callable[[str, int, int], None]
 
+#: Errors that every other job would have, too.
+_OF_THE_CLUSTER = {"cancelled", "version", "no-node", "no-package"}
+
 
 @dataclass(frozen=True)
 class Job:
@@ -64,9 +67,9 @@ def _finished(
         try:
             result = future.result()
         except Exception as error:
-            result = _explained(error, job)
-            if not job.alone:
-                raise result from error
+            result = _explained(error)
+            if not job.alone or result.code in _OF_THE_CLUSTER:
+                raise PointweaveError(result.code, f"{job.stage} {job.name}: {result.message}") from error
         done[job.stage] += 1
         if progress is not None:
             progress(job.stage, done[job.stage], totals[job.stage])
@@ -86,15 +89,17 @@ def _call(version: str, job: Job, _before: list[None]) -> Any:
         raise
 
 
-def _explained(error: Exception, job: Job) -> PointweaveError:
+def _explained(error: Exception) -> PointweaveError:
     """What Dask and fsspec raise, as one of ours. An error of another kind is a defect, and stays."""
-    what = f"{job.stage} {job.name}"
     if isinstance(error, PointweaveError):
-        return error if job.alone else PointweaveError(error.code, f"{what}: {error.message}")
+        return error
     if isinstance(error, KilledWorker):
-        return PointweaveError("worker-lost", f"{what}: its worker died again and again, most often for want of memory")
+        return PointweaveError("worker-lost", "its worker died again and again, most often for want of memory")
     if isinstance(error, CancelledError):
-        return PointweaveError("cancelled", f"{what}: the scheduler dropped it, or is gone")
+        return PointweaveError("cancelled", "the scheduler dropped it, or is gone")
+    if isinstance(error, ImportError) or "different environments" in str(error):
+        message = "the scheduler or a worker has no pointweave-dask, or another Dask: install the same everywhere"
+        return PointweaveError("version", message)
     if isinstance(error, OSError):
-        return PointweaveError("store", f"{what}: {error}")
+        return PointweaveError("store", str(error))
     raise error

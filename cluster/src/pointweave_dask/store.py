@@ -20,8 +20,8 @@ from .errors import PointweaveError
 
 T = TypeVar("T")
 
-#: Under the output: what only the work needs. It is removed at the end.
-WORK = "work"
+#: A folder in the output for what is not ready. It is removed at the end, and no scan can have its name.
+ASIDE = ".pointweave"
 
 #: Stores that show an object when its upload is complete, and not before.
 _SINGLE_PUT = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "adl", "oss", "oci"}
@@ -129,8 +129,8 @@ def is_local(fs: Any) -> bool:
 
 
 def _put_aside(fs: Any, root: str, local: Path, path: str) -> None:
-    """Written under another name of the same file system, then renamed. What a killed worker leaves lies in `work`."""
-    aside, remote = f"{root}/{WORK}/part/{uuid.uuid4().hex}", f"{root}/{path}"
+    """Written under another name of the same file system, then renamed. What a killed worker leaves goes with `ASIDE`."""
+    aside, remote = f"{root}/{ASIDE}/{uuid.uuid4().hex}", f"{root}/{path}"
     for place in (aside, remote):
         tried(fs.makedirs, os.path.dirname(place), exist_ok=True)
     if is_local(fs):

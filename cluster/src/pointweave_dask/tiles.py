@@ -18,8 +18,9 @@ from .graph import Job, Progress, run
 from .options import Flags, flags_of
 from .scans import Scan, bring, scans_in
 from .scratch import scratch
-from .store import WORK, StorageOptions, Store
+from .store import ASIDE, StorageOptions, Store
 
+WORK = "work"
 PLAN = f"{WORK}/plan.json"
 
 
@@ -69,8 +70,8 @@ def tiles(
     run(client, [plan], retries, progress)
     run(client, _jobs(store, scans, there), retries, progress)
     manifest: dict[str, Any] = store.json("manifest.json")
-    if not keep_work:
-        store.remove(WORK)
+    for ours in [ASIDE] if keep_work else [ASIDE, WORK]:
+        store.remove(ours)
     return manifest
 
 
