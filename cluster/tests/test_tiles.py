@@ -75,11 +75,18 @@ def test_resume_after_the_client_was_killed(client: Client, scans: Path, plain: 
     running.kill()
     running.wait()
     before = made[0].stat().st_mtime_ns
+    with pytest.raises(PointweaveError, match="has the work of an earlier run"):
+        tiles(client, str(scans), str(tmp_path), **OPTIONS)
+    with pytest.raises(PointweaveError, match="has the work of other scans or options"):
+        tiles(client, f"{scans}/a.xyz", str(tmp_path), resume=True, **OPTIONS)
     again = subprocess.run([*command, "--scheduler", client.scheduler.address, "--resume"], capture_output=True, text=True)
     assert again.returncode == 0, again.stderr
     assert contents(tmp_path) == plain
     assert made[0].stat().st_mtime_ns == before
     assert "count" not in again.stderr
+    assert tiles(client, str(scans), str(tmp_path), resume=True, **OPTIONS)["points"] == 2400  # nothing to do
+    with pytest.raises(PointweaveError, match="has a tileset"):
+        tiles(client, str(scans), str(tmp_path), **OPTIONS)
 
 
 def test_a_bad_input_has_one_line_and_the_others_stay(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -116,7 +115,5 @@ def _entry(scan: Scan, name: str, done: Any) -> dict[str, Any]:
 def _pages(store: Store, title: str, entries: list[dict[str, Any]]) -> None:
     element = npm.package() / "element.min.js"
     pages = {element.name: element.read_text(encoding="utf-8"), **npm.ask("pages", title, entries)}
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in pages.items():
-            Path(folder, name).write_text(text, encoding="utf-8", newline="")
-        store.put([*pages], Path(folder))
+    for name, text in pages.items():
+        store.write(name, text)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from posixpath import basename
+from typing import Any
 
 from fsspec.core import split_protocol
 
@@ -19,6 +20,8 @@ class Scan:
     url: str
     #: Its path in the folder that was named, or its file name.
     name: str
+    #: Its size, where the store tells it.
+    bytes: int | None
 
 
 def scans_in(inputs: str | Iterable[str], options: StorageOptions) -> list[Scan]:
@@ -32,16 +35,26 @@ def scans_in(inputs: str | Iterable[str], options: StorageOptions) -> list[Scan]
 
 def _scans_of(url: str, options: StorageOptions) -> list[Scan]:
     if split_protocol(url)[0] in ("http", "https"):
-        return [Scan(url, basename(url))]
+        return [Scan(url, basename(url), None)]
     fs, path = open_url(url, options)
     if any(mark in path for mark in "*?["):
-        names = {file: basename(file) for file in sorted(tried(fs.glob, path))}
+        found = tried(fs.glob, path, detail=True)
+        names = {file: basename(file) for file in sorted(found)}
     elif tried(fs.isdir, path):
-        within = sorted(file[len(path) + 1 :] for file in tried(fs.find, path))
+        found = tried(fs.find, path, detail=True)
+        within = sorted(file[len(path) + 1 :] for file in found)
         names = {f"{path}/{name}": name for name in npm.ask("scans", within)}
     else:
         names = {path: basename(path)}
-    return [Scan(file if is_local(fs) else fs.unstrip_protocol(file), name) for file, name in names.items()]
+        found = {path: _info(fs, path, url)}
+    return [Scan(file if is_local(fs) else fs.unstrip_protocol(file), name, found[file]["size"]) for file, name in names.items()]
+
+
+def _info(fs: Any, path: str, url: str) -> Any:
+    try:
+        return tried(fs.info, path)
+    except FileNotFoundError:
+        raise PointweaveError("usage", f"'{url}': there is no such file or folder") from None
 
 
 def bring(scan: Scan, options: StorageOptions, folder: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import tempfile
 import time
 import uuid
 from collections.abc import Callable, Iterable, Mapping
@@ -87,6 +88,13 @@ class Store:
     def json(self, path: str) -> Any:
         fs, root = self._open()
         return json.loads(tried(fs.cat_file, f"{root}/{path}"))
+
+    def write(self, path: str, text: str) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            local = Path(folder, path)
+            local.parent.mkdir(parents=True, exist_ok=True)
+            local.write_text(text, encoding="utf-8", newline="")
+            self.put([path], Path(folder))
 
     def remove(self, path: str) -> None:
         """Removes a file or a folder, if it is there."""

@@ -6,6 +6,7 @@ there. `work/plan.json` says what needs what.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,9 @@ from .scratch import scratch
 from .store import ASIDE, StorageOptions, Store
 
 WORK = "work"
+INPUTS = f"{WORK}/inputs.json"
 PLAN = f"{WORK}/plan.json"
+TILESET, MANIFEST = "tileset.json", "manifest.json"
 
 
 def tiles(
@@ -41,38 +44,70 @@ def tiles(
     ``inputs`` are URLs of files, folders and patterns, ``output`` is the URL of a folder. ``options`` are those of
     ``pointweave tiles``: ``spacing=0.05``, ``tile_points=1_000_000``, ``mesh=True``.
 
-    ``resume`` goes on with what an earlier run left; without it, that is made anew. ``retries`` is how often a task is tried
-    again. ``storage_options`` are fsspec's, by protocol.
+    ``resume`` goes on with what an earlier run of the same scans with the same options left. ``keep_work`` leaves the folder
+    ``work``. ``retries`` is how often a task is tried again. ``storage_options`` are fsspec's, by protocol.
 
     Raises `PointweaveError`. What was done until then is in the store.
     """
     storage = storage_options or {}
     flags = flags_of("tiles", "out", options)
-    scans = sorted(scans_in(inputs, storage), key=lambda scan: scan.url)
+    scans = scans_in(inputs, storage)
     store = Store.at(output, storage)
-    if not resume:
-        store.remove(WORK)
+    there = store.files()
+    if {TILESET, MANIFEST} <= there and not any(map(_is_work, there)):
+        if not resume:
+            raise PointweaveError("usage", f"'{output}' has a tileset: remove it, or choose another folder")
+        return _manifest(store)
+    counts = [f"{WORK}/counts/{k}.json" for k in range(len(scans))]
+    _begin(store, there, resume, flags, scans, counts)
 
-    there = store.files() if resume else set()
-    counts = {f"{WORK}/counts/{k}.json": scan for k, scan in enumerate(scans)}
-    count = [
-        Job("count", scan.name, _count, (store, k, scan), alone=True)
-        for k, (path, scan) in enumerate(counts.items())
-        if path not in there
+    counting = [
+        Job("count", f"{k} {scan.name}", _count, (store, counts[k], k, scan, flags), alone=True)
+        for k, scan in enumerate(scans)
+        if counts[k] not in there
     ]
-    counted = run(client, count, retries, progress)
-    failures = {name: error for (_, name), error in counted.items() if isinstance(error, PointweaveError)}
-    if failures:
-        lines = [f"{name}: {error.message.removeprefix(f'{name}: ')}" for name, error in sorted(failures.items())]
-        raise PointweaveError(next(iter(failures.values())).code, "\n".join(lines))
-
-    plan = Job("plan", "all", _plan, (store, list(counts), scans, flags))
-    run(client, [plan], retries, progress)
+    _check(run(client, counting, retries, progress))
+    if PLAN not in there:
+        run(client, [Job("plan", "all", _plan, (store, counts, scans, flags))], retries, progress)
     run(client, _jobs(store, scans, there), retries, progress)
-    manifest: dict[str, Any] = store.json("manifest.json")
+    manifest = _manifest(store)
     for ours in [ASIDE] if keep_work else [ASIDE, WORK]:
         store.remove(ours)
     return manifest
+
+
+def _is_work(path: str) -> bool:
+    return path.startswith(f"{WORK}/")
+
+
+def _begin(store: Store, there: set[str], resume: bool, flags: Flags, scans: list[Scan], counts: list[str]) -> None:
+    """Writes down what is made of what, as `pointweave tiles` does. The work of something else is not gone on with."""
+    sizes = [scan.bytes for scan in scans]
+    run = {"flags": flags.words, "urls": [scan.url for scan in scans], "bytes": sizes}
+    if any(map(_is_work, there)):
+        remedy = f"remove {store.url}/{WORK}"
+        if not resume:
+            raise PointweaveError("usage", f"'{store.url}' has the work of an earlier run: --resume goes on with it, or {remedy}")
+        known = store.json(INPUTS) if INPUTS in there else {}
+        if {**known, "bytes": sizes} != run or (PLAN in there and known != run):
+            raise PointweaveError("usage", f"'{store.url}' has the work of other scans or options: {remedy}")
+        for path, before, now in zip(counts, known["bytes"], sizes, strict=True):
+            if before != now and path in there:  # a scan that was mended
+                store.remove(path)
+                there.discard(path)
+    store.write(INPUTS, json.dumps(run))
+
+
+def _manifest(store: Store) -> dict[str, Any]:
+    manifest: dict[str, Any] = store.json(MANIFEST)
+    return manifest
+
+
+def _check(counted: dict[tuple[str, str], Any]) -> None:
+    """All inputs that cannot be read are told at once, each in one line."""
+    failures = [error for error in counted.values() if isinstance(error, PointweaveError)]
+    if failures:
+        raise PointweaveError(failures[0].code, "\n".join(sorted(error.message for error in failures)))
 
 
 def _jobs(store: Store, scans: list[Scan], there: set[str]) -> list[Job]:
@@ -90,20 +125,19 @@ def _jobs(store: Store, scans: list[Scan], there: set[str]) -> list[Job]:
     return jobs
 
 
-def _count(store: Store, k: int, scan: Scan) -> None:
-    made = f"{WORK}/counts/{k}.json"
+def _count(store: Store, made: str, k: int, scan: Scan, flags: Flags) -> None:
     if store.has(made):
         return
     with scratch() as folder:
         bring(scan, store.options, folder / "in")
-        _tiles(folder, "count", f"--tile={k}", scan.name)
+        _tiles(folder, "count", f"--tile={k}", *flags.words, scan.name)
         store.put([made], folder / "out")
 
 
 def _plan(store: Store, counts: list[str], scans: list[Scan], flags: Flags) -> None:
     with scratch() as folder:
         store.fetch(counts, folder / "out")
-        _tiles(folder, "plan", *flags.laid(folder / "in"), *(scan.name for scan in scans))
+        _tiles(folder, "plan", *flags.words, *(scan.name for scan in scans))
         store.put([PLAN], folder / "out")
 
 
