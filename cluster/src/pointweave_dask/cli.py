@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import logging
 import os
+import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -96,13 +97,21 @@ def _client(scheduler: str | None, jobs: int | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    workers = jobs or os.cpu_count() or 1
-    # On loopback alone, and at a port that is free.
-    local = {"dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
-    with LocalCluster(n_workers=workers, threads_per_worker=1, **local) as cluster, Client(cluster) as client:
+    with _workers(jobs or os.cpu_count() or 1) as cluster, Client(cluster) as client:
         if find_spec("bokeh") is not None:
             _say(f"dashboard at {cluster.dashboard_link}")
         yield client
+
+
+def _workers(count: int) -> LocalCluster:
+    """Processes of one thread each. The dashboard is on loopback, at a port that is free."""
+    local = {"dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
+    # They inherit this: Ctrl-C is for the client, which ends them.
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        return LocalCluster(n_workers=count, threads_per_worker=1, **local)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _run(command: str, client: Client, said: dict[str, Any]) -> int:
