@@ -68,6 +68,8 @@ pub mod texture;
 pub mod poster;
 #[cfg(feature = "stages")]
 pub mod pipeline;
+#[cfg(feature = "tiles")]
+pub mod tiles;
 
 // Beside the pipeline: solids with a known surface and their simulated scans; files.
 #[cfg(any(feature = "samples", feature = "stages"))]

@@ -9,6 +9,7 @@ import { flagsOf, optionsFrom, parseValue, parserOptions } from './flags.js';
 import { LIGHT, checkFormat, firstOf, formatOf } from './formats.js';
 import { MERGE_FLAGS, PREPARE_FLAGS, isEmpty, preparation } from './prepare-flags.js';
 import { CATALOGUE_FLAGS, catalogueSaid } from './catalogue-flags.js';
+import { TILES_FLAGS, tilesSaid } from './tiles-flags.js';
 import { UsageError } from './usage.js';
 
 /** @import { Command } from './flags.js' */
@@ -34,13 +35,14 @@ import { UsageError } from './usage.js';
  * @property {Record<string, any>} write options of `write`, without the format
  * @property {string} [format] of the results
  * @property {import('./catalogue-flags.js').CatalogueSaid} [catalogue] of a catalogue
+ * @property {import('./tiles-flags.js').TilesSaid} [tiles] of tiles
  */
 
 /** The formats that a flag is for, and no others. */
 const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'usdz', 'zip'] };
 
 /** @type {Command[]} */
-export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify', 'poster', 'catalogue'];
+export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify', 'poster', 'catalogue', 'tiles'];
 const NAMES = `${COMMANDS.slice(0, -1).join(', ')} or ${COMMANDS.at(-1)}`;
 
 /**
@@ -74,8 +76,9 @@ export function optionsOf(command) {
     threads: { type: 'string' },
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
-    ...(command !== 'inspect' && { out: { type: 'string', short: 'o' }, ...CLOUD_FLAGS, ...(!LIGHT.includes(command) && PREPARE_FLAGS) }),
-    ...(!['inspect', 'catalogue'].includes(command) && { 'out-dir': { type: 'string' }, format: { type: 'string' } }),
+    ...(command === 'tiles' && { out: { type: 'string', short: 'o' }, unit: CLOUD_FLAGS.unit, ...TILES_FLAGS }),
+    ...(!['inspect', 'tiles'].includes(command) && { out: { type: 'string', short: 'o' }, ...CLOUD_FLAGS, ...(!LIGHT.includes(command) && PREPARE_FLAGS) }),
+    ...(!['inspect', 'catalogue', 'tiles'].includes(command) && { 'out-dir': { type: 'string' }, format: { type: 'string' } }),
     ...(command === 'catalogue' && CATALOGUE_FLAGS),
     ...(command === 'merge' && MERGE_FLAGS),
     ...parserOptions(flagsOf(command)),
@@ -122,11 +125,12 @@ function hint(word, names, dashes = '') {
  * @returns {Task}
  */
 function task(command, values, inputs) {
-  if (inputs.length === 0) throw new UsageError(`${command} needs a file`);
+  if (inputs.length === 0) throw new UsageError(`${command} needs a file${command === 'tiles' ? ' or a folder of files' : ''}`);
   if (inputs.filter((input) => input === '-').length > 1) throw new UsageError('standard input can be read once');
   const threads = values.threads === undefined ? 'auto' : parseValue('threads', ENGINE.threads, values.threads);
   const { own, read, write } = optionsFrom(command, values);
   const shared = { command, json: Boolean(values.json), threads: /** @type {'auto' | number} */ (threads), cloud: cloudSaid(values), read: { ...read, ...readSaid(values) }, own, write, prepare: preparation(values) };
+  if (command === 'tiles') return { ...shared, jobs: [], tiles: tilesSaid(values, inputs, { read: shared.read, unit: shared.cloud.unit }) };
   if (command === 'prepare' && isEmpty(shared.prepare)) throw new UsageError('what should be cut? --prepare RECIPE, --crop, --drop-strays, --drop-planes, --drop-floor or --keep-largest');
   if (command === 'simplify' && Object.keys(own).length === 0) throw new UsageError('how light should it be? --triangles N, --error SHARE, or both');
   if (command === 'catalogue') return { ...shared, jobs: [], catalogue: catalogueSaid(values, inputs) };

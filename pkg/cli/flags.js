@@ -7,7 +7,7 @@ import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
 /** @import { Rule, Table } from '../engine/rules.js' */
-/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'simplify' | 'merge' | 'inspect' | 'poster' | 'catalogue'} Command */
+/** @typedef {'reduce' | 'reconstruct' | 'prepare' | 'simplify' | 'merge' | 'inspect' | 'poster' | 'catalogue' | 'tiles'} Command */
 
 /**
  * @typedef {object} Flag
@@ -58,7 +58,7 @@ const AMOUNTS = {
  */
 export function flagsOf(command) {
   const read = flags('read', TABLES.read);
-  if (command === 'inspect') return read;
+  if (command === 'inspect' || command === 'tiles') return read;
   if (command === 'prepare' || command === 'merge') return [...read, ...flags('write', TABLES.write)];
   if (command === 'poster') return [...flags('poster', POSTERS), ...read.filter(({ key }) => key !== 'faces')];
   if (command === 'simplify') return [...flags('simplify', TABLES.simplify), ...read.filter(({ key }) => key !== 'faces'), ...flags('write', TABLES.write)];

@@ -5,6 +5,7 @@ import { flagsOf } from './flags.js';
 import { MERGE_ROWS, PREPARE_ROWS } from './prepare-flags.js';
 import { CATALOGUE_ROWS } from './catalogue-flags.js';
 import { READ_ROWS } from './read-flags.js';
+import { STEPS, STEP_ROWS, TILES_ROWS } from './tiles-flags.js';
 
 /** @import { Command, Flag } from './flags.js' */
 
@@ -18,6 +19,7 @@ const DOES = {
   simplify: 'any mesh with fewer triangles',
   poster: 'a picture of a scan or a mesh',
   catalogue: 'a folder of scans as a web page of light models',
+  tiles: 'a scan of any size as tiles that a page streams',
 };
 
 const COMMON = [
@@ -54,6 +56,7 @@ export function overview() {
   pointweave simplify mesh.ply -o light.glb --triangles 10000
   pointweave poster mesh.glb -o poster.png --size 800x600
   pointweave catalogue scans/ -o site/
+  pointweave tiles survey/*.laz -o tiles/
 
 Commands, each with --help
 ${rows(commands)}
@@ -64,6 +67,7 @@ ${rows(commands)}
 /** @param {Command} command */
 export function help(command) {
   const flags = flagsOf(command);
+  if (command === 'tiles') return tilesHelp(flags.map(row));
   const result = command === 'poster' ? 'poster.png' : `result.${isMesh(command) ? 'glb' : 'ply'}`;
   const output = command === 'inspect' ? '' : ` -o ${result} [options]`;
   const sections = SECTIONS.map(([groups, title]) => [title, flags.filter(({ group }) => groups.includes(group)).map(row)]);
@@ -77,6 +81,18 @@ export function help(command) {
 ${usage}
 
 ${filled.map(([title, lines]) => `${title}\n${rows(/** @type {string[][]} */ (lines))}`).join('\n')}`;
+}
+
+/** @param {string[][]} read */
+function tilesHelp(read) {
+  const unit = CLOUD_ROWS.filter(([flag]) => flag.startsWith('--unit'));
+  const sections = [['Tiles', TILES_ROWS], [`A step alone, for schedulers: ${STEPS.join(', ')}`, STEP_ROWS], ['Scan', [...read, ...READ_ROWS, ...unit]], ['General', COMMON]];
+  return `pointweave tiles: ${DOES.tiles}
+
+  pointweave tiles scan.laz more.e57 folder/ -o tiles/ [options]
+  pointweave tiles make -o tiles/ --tile 3-1-0-2
+
+${sections.map(([title, lines]) => `${title}\n${rows(/** @type {string[][]} */ (lines))}`).join('\n')}`;
 }
 
 /** @param {Flag} flag */

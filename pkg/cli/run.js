@@ -26,6 +26,7 @@ import { UsageError } from './usage.js';
  */
 export async function run(task, signal) {
   if (task.catalogue) return (await import('./catalogue.js')).catalogue(task, task.catalogue, signal);
+  if (task.tiles) return (await import('./tiles.js')).tiles(task, task.tiles, signal);
   await checkOutputs(task.jobs);
   const steps = await stepsOf(task.prepare);
   await compressorFor(task.write.meshopt); // that its packages are missing is known before the work

@@ -10,7 +10,7 @@ import { track } from './progress.js';
 /**
  * A function of `src/js` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'prepare' | 'simplify' | 'texture' | 'poster' | 'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'openArchive' | 'unpack' | 'write' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'prepare' | 'simplify' | 'texture' | 'poster' | 'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'openArchive' | 'unpack' | 'write' | 'countPoints' | 'takeCounts' | 'planTiles' | 'openLeaves' | 'splitPoints' | 'sampleTile' | 'measureTiles' | 'tileSurroundings' | 'reduceTile' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 
@@ -23,8 +23,8 @@ import { track } from './progress.js';
  */
 
 /**
- * The engine's builds, and those that hold readers of files, decoders of pictures, writers, recipes, what makes meshes light, or samples alone.
- * @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports' | 'prepare' | 'light' | 'samples'} WasmBuild
+ * The engine's builds, and those that hold readers of files, decoders of pictures, writers, recipes, what makes meshes light, the steps of tiles, or samples alone.
+ * @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports' | 'prepare' | 'light' | 'tiles' | 'samples'} WasmBuild
  */
 
 /**

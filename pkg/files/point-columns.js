@@ -196,7 +196,7 @@ function viewpointsOf({ positions, starts, of: stations }, points) {
 }
 
 /** As `src/formats/table.rs` does it, in single precision. @param {Float32Array} colors @param {number} scale */
-function toBytes(colors, scale) {
+export function toBytes(colors, scale) {
   const bytes = convert(Uint8Array, colors.length);
   for (let i = 0; i < colors.length; i++) {
     bytes[i] = Math.min(255, Math.max(0, Math.floor(Math.fround(colors[i] * scale) + 0.5)));

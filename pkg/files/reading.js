@@ -54,9 +54,26 @@ export async function readerOf(file, format) {
  * @param {Helpers} helpers
  * @returns {Promise<FileCloud>}
  */
-export async function readFile(ask, file, options, { signal, onProgress }, { find, decode }) {
+export async function readFile(ask, file, options, watch, helpers) {
   const columns = new PointColumns();
+  const { summary, indices } = await readBlocks(ask, file, options, watch, helpers, (block, expected) => void columns.add(block, expected));
+  const cloud = columns.finish(summary);
+  return indices ? { ...cloud, indices } : cloud;
+}
+
+/**
+ * A file's points as they come, none of which is kept here.
+ * @param {(request: Request) => Promise<any>} ask
+ * @param {ByteSource} file
+ * @param {ReadingOptions} options
+ * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
+ * @param {Helpers} helpers
+ * @param {(block: Block, expected: number) => Promise<void> | void} take a block, and how many points there will be in all, as far as can be told
+ * @returns {Promise<{ summary: Summary, indices?: Uint32Array }>}
+ */
+export async function readBlocks(ask, file, options, { signal, onProgress }, { find, decode }, take) {
   let told = 0;
+  let points = 0;
   /** @param {number} share */
   const tell = (share) => {
     told = Math.max(told, share);
@@ -64,11 +81,11 @@ export async function readFile(ask, file, options, { signal, onProgress }, { fin
     signal.throwIfAborted();
   };
   /** @param {Block | undefined} block @param {number} read bytes */
-  const add = (block, read) => {
+  const add = async (block, read) => {
     if (!block) return 0;
-    const rate = (columns.points + block.positions.length / 3) / Math.max(read, 1);
-    const expected = block.most ?? Math.ceil(1.02 * rate * file.size);
-    columns.add(block, expected);
+    points += block.positions.length / 3;
+    const expected = block.most ?? Math.ceil((1.02 * points * file.size) / Math.max(read, 1));
+    await take(block, expected);
     return expected;
   };
 
@@ -79,25 +96,24 @@ export async function readFile(ask, file, options, { signal, onProgress }, { fin
     signal.throwIfAborted();
     if (slice.length === 0) throw new PointweaveError({ code: 'bad-input', message: 'the data ended before its size', expected: file.size, found: at });
     at += slice.length;
-    add(await ask({ call: 'readPush', args: [slice] }), at);
+    await add(await ask({ call: 'readPush', args: [slice] }), at);
     // Some formats give no point before all of the file is there; to take it apart is then the other half.
-    tell((at / file.size) * (columns.points > 0 ? 0.99 : 0.5));
+    tell((at / file.size) * (points > 0 ? 0.99 : 0.5));
   }
   for (;;) {
     /** @type {{ block?: Block, indices?: Uint32Array, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
     const { block, indices, summary, want } = await ask({ call: 'readEnd', args: [] });
-    const expected = add(block, file.size);
+    const expected = await add(block, file.size);
     if (summary) {
-      const cloud = columns.finish(summary);
       tell(1);
-      return indices ? { ...cloud, indices } : cloud;
+      return { summary, indices };
     }
     if (want?.file !== undefined) await ask({ call: 'readFile', args: [await find(want.file)] });
     if (want?.picture) {
       const { width = 0, height = 0, pixels } = (await decode(want.picture)) ?? {};
       await ask({ call: 'readPicture', args: [pixels, width, height] });
     }
-    tell(0.5 + 0.49 * Math.min(1, columns.points / Math.max(expected, 1)));
+    tell(0.5 + 0.49 * Math.min(1, points / Math.max(expected, 1)));
   }
 }
 

@@ -60,15 +60,43 @@ impl Features {
         eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
         progress: &mut dyn Progress,
     ) -> Result<Features> {
-        // Copies of a point say nothing of the surface: one of each is measured, and they share its area.
+        Features::of_places(tree, progress, |places, point, progress| {
+            Features::measure_distinct(places, &|k| eye(point(k)), progress)
+        })
+    }
+
+    /// [`Features::measure`] of a part of a scan whose noise and spacing are known, in the unit frame: what is measured of a point
+    /// follows from the points around it alone. Scan lines and steps are not looked for.
+    pub(crate) fn measure_part(
+        tree: &Octree,
+        (noise, spacing): (f32, f32),
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
+        Features::of_places(tree, progress, |places, _, progress| {
+            let scales = Scales::new(noise, spacing);
+            Features::measure_by(places, &scales, |_| noise, progress)
+        })
+    }
+
+    /// Copies of a point say nothing of the surface: one of each is measured, and they share its area. `measure` gets a tree of
+    /// them, and which point of `tree` each is.
+    fn of_places(
+        tree: &Octree,
+        progress: &mut dyn Progress,
+        measure: impl FnOnce(
+            &Octree,
+            &(dyn Fn(usize) -> usize + Sync),
+            &mut dyn Progress,
+        ) -> Result<Features>,
+    ) -> Result<Features> {
         if !copied(&tree.points) {
-            return Features::measure_distinct(tree, eye, progress);
+            return measure(tree, &|k| k, progress);
         }
         let copies: Vec<Range<usize>> = copies(&tree.points);
         let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
         let places = Octree::build(&distinct);
-        let eye_of = |k: usize| eye(copies[places.order[k] as usize].start);
-        let one = Features::measure_distinct(&places, &eye_of, progress)?;
+        let point = |k: usize| copies[places.order[k] as usize].start;
+        let one = measure(&places, &point, progress)?;
         let each = || {
             copies
                 .iter()
@@ -112,8 +140,20 @@ impl Features {
         (steps, most): (f32, f32),
         progress: &mut dyn Progress,
     ) -> Result<Features> {
-        let cells = tree.cut(|node| node.range().len() <= CELL);
         let scales = Scales::measure(tree).at_most(most).at_least(steps);
+        let noise = |normals: &[Vec3]| noise::within_sheets(tree, normals, &scales).max(steps);
+        let features = Features::measure_by(tree, &scales, noise, progress)?;
+        Ok(Features { steps, ..features })
+    }
+
+    /// With supports of these sizes; the planes' normals tell the noise.
+    fn measure_by(
+        tree: &Octree,
+        scales: &Scales,
+        noise: impl FnOnce(&[Vec3]) -> f32,
+        progress: &mut dyn Progress,
+    ) -> Result<Features> {
+        let cells = tree.cut(|node| node.range().len() <= CELL);
         let mut part = Part::new(progress, 0.0..0.4);
         let n = tree.points.len();
         let planes: Vec<Plane> = par::flat_map_progress(
@@ -131,11 +171,11 @@ impl Features {
             variation: planes.iter().map(|p| p.variation).collect(),
             residual: Vec::new(),
             noise: scales.noise,
-            steps,
+            steps: 0.0,
             lines: 0.0,
         };
         drop(planes);
-        features.noise = noise::within_sheets(tree, &features.normals, &scales).max(steps);
+        features.noise = noise(&features.normals);
         let (early, late) = (0.4..0.7, 0.7..1.0);
         features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
             sums.normals(denoise)

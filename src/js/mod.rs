@@ -1,7 +1,7 @@
 //! The border to JavaScript: arguments checked and taken, a call of the crate, results handed over. No algorithm is here.
 //!
 //! 1. `wasm`: the engine's calls: reduce, reconstruct, inspect. `wasm_read`: readers, slice by slice. `wasm_write`: writers.
-//!    `wasm_prepare`: recipes. `wasm_light`: meshes with fewer triangles. `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
+//!    `wasm_prepare`: recipes. `wasm_light`: meshes with fewer triangles. `wasm_tiles`: the steps of tiles. `wasm_samples`: sample scans. `wasm_pictures`: pictures of textures. Which of them a module has, its feature says (`Cargo.toml`).
 //! 2. `values`: options of a call, and reports. `progress`: who hears of it. `clouds`, `viewpoints`, `crs`: a JavaScript object becomes a [`crate::Cloud`] or a part of it, and back.
 //! 3. This file is what all of them need: panics kept, errors thrown as objects, objects made.
 //!
@@ -25,9 +25,19 @@ pub mod clouds;
     feature = "prepare"
 ))]
 mod crs;
-#[cfg(any(feature = "engine", feature = "light", feature = "prepare"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "light",
+    feature = "prepare",
+    feature = "tiles"
+))]
 mod progress;
-#[cfg(any(feature = "engine", feature = "light", feature = "prepare"))]
+#[cfg(any(
+    feature = "engine",
+    feature = "light",
+    feature = "prepare",
+    feature = "tiles"
+))]
 mod values;
 #[cfg(any(
     feature = "engine",
@@ -56,6 +66,8 @@ pub mod wasm_prepare;
 pub mod wasm_read;
 #[cfg(feature = "samples")]
 pub mod wasm_samples;
+#[cfg(feature = "tiles")]
+pub mod wasm_tiles;
 #[cfg(feature = "exports")]
 pub mod wasm_write;
 
@@ -123,7 +135,8 @@ pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsResult {
     feature = "las",
     feature = "light",
     feature = "packed",
-    feature = "prepare"
+    feature = "prepare",
+    feature = "tiles"
 ))]
 pub(crate) fn optional<T, A: Into<JsValue>>(value: &Option<T>, array: impl Fn(&T) -> A) -> JsValue {
     value

@@ -1,15 +1,12 @@
 //! The density of the reduced points: their wanted spacing at every place of the surface.
 //!
-//! 1. Curvature asks for a density ρ ∝ κ^α. Against the largest error of a piecewise linear surface α = 1 is best,
-//!    against the rms error 2/3 (Clark, *Proc. SIGGRAPH* 1976 onwards; d'Azevedo and Simpson, 1991); α = ½ was the best
-//!    measured, because κ is an estimate.
-//! 2. Bounds keep flat parts from starving and noise from gathering all points: [`FINEST`], [`COARSEST`].
-//! 3. A gradient limit |∇h| ≤ [`GRADING`] lets the spacing h grow only slowly away from where it is small; without it
+//! 1. The spacing that curvature asks for, bounded: [`law`](crate::reduce::law).
+//! 2. A gradient limit |∇h| ≤ [`GRADING`] lets the spacing h grow only slowly away from where it is small; without it
 //!    the error of a CAD part more than doubles.
-//! 4. The scale makes the expected counts add up to the target.
-//! 5. On thin walls the spacing is at most half of the distance to the other side, whatever the curvature says ([`walls`]).
+//! 3. The scale makes the expected counts add up to the target.
+//! 4. On thin walls the spacing is at most half of the distance to the other side, whatever the curvature says ([`walls`]).
 //!
-//! Steps 1-3 work on groups of a dozen points, which is the resolution that the curvature estimate has anyway.
+//! Steps 1 and 2 work on groups of a dozen points, which is the resolution that the curvature estimate has anyway.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -22,16 +19,9 @@ use crate::cloud::neighborhood::{Block, CELL, Neighborhood, bounds, even_reach};
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
+use crate::reduce::law::{Law, Patch};
 use crate::reduce::walls;
 
-/// Smallest spacing, as a share of the mean: three times the mean density.
-const FINEST: f32 = 0.577;
-/// Largest spacing, as a multiple of the mean: three quarters of the mean density. Flat parts that are given less come
-/// out of a Poisson reconstruction with dents (error of a clean CAD part at 2: four times as large).
-const COARSEST: f32 = 1.155;
-/// Smallest curvature that counts, as a share of the mean. Without it clean flat parts, whose curvature is zero, set the
-/// mean and drive everything else to the finest spacing (error of a clean CAD part 15 % larger, at its edges 30 %).
-const FLATTEST: f64 = 0.1;
 /// Largest growth of the spacing per length along the surface.
 const GRADING: f32 = 0.2;
 /// Largest spacing with a tolerance as the target, a fraction of the diagonal: a plane needs more than its corners.
@@ -60,10 +50,13 @@ impl Density {
     /// The density of `count` ≤ n points. `curvature_weight` is α.
     pub fn new(tree: &Octree, features: &Features, count: usize, curvature_weight: f64) -> Density {
         let groups = Groups::new(tree, features);
-        let wanted = groups.curvature_spacing(curvature_weight);
-        let relative = groups.spread(tree, wanted);
+        let law = Law::of(
+            &groups.patches(1.0).collect::<Vec<Patch>>(),
+            curvature_weight,
+        );
+        let relative = groups.spread(tree, groups.wanted(&law));
         let deserved: Vec<f64> = deserved(features, &relative).collect();
-        let scale = scale_to(&deserved, count);
+        let scale = scale_to(&deserved, |_| 1.0, count as f64);
         let unit = 1.0 / scale.sqrt();
         let spacing = relative.iter().map(|&h| (f64::from(h) * unit) as f32);
         let share = deserved.iter().map(|&d| (d * scale).min(1.0) as f32);
@@ -74,6 +67,21 @@ impl Density {
         let Density { spacing, share } = &mut density;
         walls::refine(tree, features, (spacing, share), &deserved, count);
         density
+    }
+
+    /// The density of a part of a scan, by the `law` and the `scale` of the whole: what it is at a point follows from the surface
+    /// around it alone. Thin walls are not looked for.
+    pub(crate) fn of_part(tree: &Octree, features: &Features, law: &Law, scale: f64) -> Density {
+        let relative = relative_spacing(tree, features, law);
+        let unit = 1.0 / scale.sqrt();
+        let share = deserved(features, &relative).map(|d| (d * scale).min(1.0) as f32);
+        Density {
+            share: share.collect(),
+            spacing: relative
+                .iter()
+                .map(|&h| (f64::from(h) * unit) as f32)
+                .collect(),
+        }
     }
 
     /// The number of reduced points that the shares add up to, rounded up.
@@ -150,20 +158,58 @@ pub fn quotas(shares: &[f64], cells: &[Range<usize>], total: usize) -> Vec<usize
     quotas
 }
 
-/// The factor s for which Σ min(1, s·d) = count.
-fn scale_to(deserved: &[f64], count: usize) -> f64 {
-    let mut scale = count as f64 / deserved.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+/// Whole numbers that follow the shares of the cells each for itself: rounded up where `chance` of the cell, evenly distributed
+/// from 0 to 1, is less than what is beyond the whole.
+pub(crate) fn local_quotas(
+    shares: &[f64],
+    cells: &[Range<usize>],
+    chance: impl Fn(&Range<usize>) -> f64,
+) -> Vec<usize> {
+    let each = shares.iter().zip(cells);
+    let mut quotas: Vec<usize> = each
+        .map(|(share, cell)| ((share + chance(cell)).floor() as usize).min(cell.len()))
+        .collect();
+    // Some point stands for the few that there are.
+    if quotas.iter().all(|&quota| quota == 0) {
+        quotas[0] = 1;
+    }
+    quotas
+}
+
+/// The spacing at every point by the law, at the scale 1.
+fn relative_spacing(tree: &Octree, features: &Features, law: &Law) -> Vec<f32> {
+    let groups = Groups::new(tree, features);
+    groups.spread(tree, groups.wanted(law))
+}
+
+/// Reduced points that the patch of every point deserves by the law, at the scale 1.
+pub(crate) fn deserved_by(tree: &Octree, features: &Features, law: &Law) -> Vec<f64> {
+    deserved(features, &relative_spacing(tree, features, law)).collect()
+}
+
+/// The patches of the surface of which curvature is known, each with the middle of its points.
+pub(crate) fn patches(tree: &Octree, features: &Features, weight: f64) -> Vec<(Vec3, Patch)> {
+    let groups = Groups::new(tree, features);
+    let patches = groups.patches(weight);
+    groups.centers.iter().copied().zip(patches).collect()
+}
+
+/// The factor s for which Σ w min(1, s·d) = count.
+pub(crate) fn scale_to(deserved: &[f64], weight: impl Fn(usize) -> f64, count: f64) -> f64 {
+    let each = || deserved.iter().enumerate().map(|(i, d)| (d, weight(i)));
+    let sum: f64 = each().map(|(d, w)| d * w).sum();
+    let mut scale = count / sum.max(f64::MIN_POSITIVE);
     // Each round fills more points up to 1 and spreads the rest; almost always none or a few rounds.
     for _ in 0..30 {
         let (mut full, mut rest) = (0.0, 0.0);
-        for &d in deserved {
+        for (d, w) in each() {
             if d * scale >= 1.0 {
-                full += 1.0;
+                full += w;
             } else {
-                rest += d;
+                rest += d * w;
             }
         }
-        let next = (count as f64 - full) / rest.max(f64::MIN_POSITIVE);
+        let next = (count - full) / rest.max(f64::MIN_POSITIVE);
         if next <= scale * (1.0 + 1e-9) || rest == 0.0 {
             break;
         }
@@ -208,35 +254,20 @@ impl Groups {
         }
     }
 
-    /// Steps 1 and 2. The result's unit is free.
-    fn curvature_spacing(&self, alpha: f64) -> Vec<f32> {
-        let total = self.area.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let mean = |values: &[f64]| {
-            values
-                .iter()
-                .zip(&self.area)
-                .map(|(v, a)| v * a)
-                .sum::<f64>()
-                / total
-        };
-        let unit = (total / self.area.len() as f64).sqrt();
-        let typical = mean(&self.curvature);
-        if typical == 0.0 || alpha == 0.0 {
-            return vec![unit as f32; self.area.len()];
-        }
-        // h = ρ^(-1/2), then in units of its mean over the surface, and bounded.
-        let asked = |k: &f64| libm::pow((k / typical).max(FLATTEST), -0.5 * alpha);
-        let mut spacing: Vec<f64> = self.curvature.iter().map(asked).collect();
-        for _ in 0..2 {
-            let mean = mean(&spacing);
-            for h in &mut spacing {
-                *h = (*h / mean).clamp(f64::from(FINEST), f64::from(COARSEST));
-            }
-        }
-        spacing.iter().map(|h| (h * unit) as f32).collect()
+    fn patches(&self, weight: f64) -> impl Iterator<Item = Patch> {
+        let each = self.curvature.iter().zip(&self.area);
+        each.map(move |(&curvature, &area)| Patch {
+            curvature,
+            area,
+            weight,
+        })
     }
 
-    /// Step 3, then from groups to points.
+    fn wanted(&self, law: &Law) -> Vec<f32> {
+        self.curvature.iter().map(|&k| law.spacing(k)).collect()
+    }
+
+    /// Step 2, then from groups to points.
     fn spread(&self, tree: &Octree, mut wanted: Vec<f32>) -> Vec<f32> {
         let rings = rings(&self.centers);
         limit_gradient(&mut wanted, &self.centers, &rings);
@@ -313,7 +344,7 @@ fn rings(centers: &[Vec3]) -> Vec<Vec<u32>> {
     rings
 }
 
-/// Step 3, exactly, by Dijkstra's algorithm: h ← min over paths of (h at the start + grading · length).
+/// Step 2, exactly, by Dijkstra's algorithm: h ← min over paths of (h at the start + grading · length).
 fn limit_gradient(spacing: &mut [f32], centers: &[Vec3], rings: &[Vec<u32>]) {
     // Positive floats order as their bits do.
     let entry = |h: f32, i: usize| Reverse((h.to_bits(), i as u32));

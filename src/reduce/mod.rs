@@ -1,7 +1,7 @@
 //! The reduction of section 3: an octree's sub-domains, fuzzy c-means in each, its centres in place of the points.
 //!
 //! 1. Goal: how many points, and how close where. [`density`] asks for more of them where the surface is curved; a target
-//!    given as a `tolerance` is searched for by reducing and measuring.
+//!    given as a `tolerance` is searched for by reducing and measuring. [`law`] is how curvature becomes spacing.
 //! 2. Clusters: centres and memberships ([`clustering::Clustering`]), by one of two methods.
 //!    - Adaptive: [`clusters`], weighted fuzzy c-means over all sub-domains without seams (eq. 1, 2 and 5); centres start by
 //!      `farthest_first` traversal.
@@ -25,6 +25,7 @@ pub mod density;
 pub(crate) mod farthest_first;
 pub mod fcm;
 pub mod height_field;
+pub mod law;
 pub mod paper;
 pub(crate) mod places;
 pub mod placement;
@@ -50,6 +51,7 @@ use crate::reduce::clustering::Clustering;
 use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
+use crate::reduce::law::Law;
 use crate::reduce::placement::{Members, Placed};
 use crate::reduce::places::Places;
 use crate::reduce::shares::{SHARES, Shares};
@@ -99,9 +101,41 @@ pub fn reduce(
     progress: &mut dyn Progress,
 ) -> Result<Reduced> {
     params.validate()?;
+    run((cloud, tree), features, params, None, progress)
+}
+
+/// What a part of a scan is reduced by, so that the points of its parts are those of the whole.
+pub(crate) struct Whole<'a> {
+    /// The law of the whole.
+    pub(crate) law: Law,
+    /// Reduced points that the law's spacing stands for, where it says 1.
+    pub(crate) scale: f64,
+    /// Even in 0..1, of a point by its index in the cloud: the same whatever part it is in.
+    pub(crate) chance: &'a dyn Fn(u32) -> f64,
+}
+
+/// [`reduce`] of a part of a scan: the target is the `whole`'s, and so that sub-domains do not depend on the part, the parameters say
+/// how many points they have.
+pub(crate) fn reduce_part(
+    (cloud, tree): (&Cloud, &Octree),
+    features: Features,
+    params: &ReduceParams,
+    whole: &Whole,
+    progress: &mut dyn Progress,
+) -> Result<Reduced> {
+    run((cloud, tree), features, params, Some(whole), progress)
+}
+
+fn run(
+    (cloud, tree): (&Cloud, &Octree),
+    features: Features,
+    params: &ReduceParams,
+    whole: Option<&Whole>,
+    progress: &mut dyn Progress,
+) -> Result<Reduced> {
     let power = Fuzzifier::new(params.fuzzifier(params.method));
     let given = tree.points.len();
-    let all = params.target.count(given) == Some(given);
+    let all = whole.is_none() && params.target.count(given) == Some(given);
     let places = if all { None } else { Places::of(tree) };
     let (at, features) = match &places {
         Some(places) => (&places.tree, places.features(&features)),
@@ -113,9 +147,21 @@ pub fn reduce(
         features,
         params,
     };
-    let (goal, reason) = job.goal(progress)?;
+    let first = |k: usize| places.as_ref().map_or(k as u32, |p| p.point(k as u32));
+    let chance =
+        |k: usize| whole.map_or(0.0, |whole| (whole.chance)(tree.order[first(k) as usize]));
+    let (goal, reason) = match whole {
+        None => job.goal(progress)?,
+        Some(whole) => {
+            let density = Density::of_part(at, &job.features, &whole.law, whole.scale);
+            (
+                Goal::Density(Quotas::Local(&chance), density),
+                String::new(),
+            )
+        }
+    };
     let searched = match params.target {
-        Target::Tolerance(_) => tolerance::DONE,
+        Target::Tolerance(_) if whole.is_none() => tolerance::DONE,
         _ => 0.0,
     };
     // Only the goal asks for it.
@@ -188,13 +234,22 @@ fn corners(points: &[Vec3]) -> [Vec3; 2] {
 }
 
 /// What the options ask for.
-enum Goal {
+enum Goal<'a> {
     /// This many points by the paper's method.
     Count(usize),
     /// This many points with this density.
-    Density(usize, Density),
+    Density(Quotas<'a>, Density),
     /// Flat cells are reduced, the others kept: the paper's own criterion, for which both methods take its cells.
     Flatness,
+}
+
+/// How many centres start in the cells.
+#[derive(Clone, Copy)]
+enum Quotas<'a> {
+    /// So many together.
+    Total(usize),
+    /// In each as many as it deserves, rounded by the chance of its first point, given its index in the tree.
+    Local(&'a dyn Fn(usize) -> f64),
 }
 
 /// How centres are placed.
@@ -224,7 +279,7 @@ struct Arrangement {
 
 impl Job<'_> {
     /// What to do, and why it is not what was asked for, where it is not.
-    fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal, String)> {
+    fn goal(&self, progress: &mut dyn Progress) -> Result<(Goal<'static>, String)> {
         if let Target::Tolerance(tolerance) = self.params.target {
             let (tolerance, reason) = tolerance::allowed(&self.features, tolerance);
             return Ok((self.within(tolerance, progress)?, reason));
@@ -244,20 +299,20 @@ impl Job<'_> {
             (Some(count), Method::Adaptive) => {
                 let alpha = self.params.curvature_weight;
                 let density = Density::new(self.tree, &self.features, count, alpha);
-                Goal::Density(count, density)
+                Goal::Density(Quotas::Total(count), density)
             }
         };
         Ok((goal, reason))
     }
 
     /// Looks for the fewest points that keep the surface within a tolerance.
-    fn within(&self, tolerance: f64, progress: &mut dyn Progress) -> Result<Goal> {
+    fn within(&self, tolerance: f64, progress: &mut dyn Progress) -> Result<Goal<'static>> {
         let curvature = CurvatureSpacing::new(self.tree, &self.features);
         let goal = |chord: f64| {
             let density = curvature.within(chord);
             match self.params.method {
                 Method::Paper => Goal::Count(density.count()),
-                Method::Adaptive => Goal::Density(density.count(), density),
+                Method::Adaptive => Goal::Density(Quotas::Total(density.count()), density),
             }
         };
         let n = self.tree.points.len();
@@ -289,13 +344,15 @@ impl Job<'_> {
             ..
         } = self;
         match goal {
-            Goal::Count(count) | Goal::Density(count, _) if count == tree.points.len() => {
+            Goal::Count(count) | Goal::Density(Quotas::Total(count), _)
+                if count == tree.points.len() =>
+            {
                 Ok(keep_all(tree, features))
             }
             Goal::Flatness => paper::cluster(tree, features, None, params, progress),
             Goal::Count(count) => paper::cluster(tree, features, Some(count), params, progress),
-            Goal::Density(count, density) => {
-                adaptive(tree, features, (count, density), params, progress)
+            Goal::Density(quotas, density) => {
+                adaptive(tree, features, (quotas, density), params, progress)
             }
         }
     }
@@ -303,7 +360,8 @@ impl Job<'_> {
     /// How centres are placed: points that are all kept, and the paper's centres, stay where they are.
     fn plan(&self, goal: &Goal) -> Plan {
         let dense = match goal {
-            Goal::Density(count, _) => *count < self.tree.points.len(),
+            Goal::Density(Quotas::Total(count), _) => *count < self.tree.points.len(),
+            Goal::Density(Quotas::Local(_), _) => true,
             Goal::Count(_) | Goal::Flatness => false,
         };
         let placement = match self.params.placement {
@@ -381,13 +439,21 @@ fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
 fn adaptive(
     tree: &Octree,
     features: &Features,
-    (count, density): (usize, Density),
+    (quotas, density): (Quotas, Density),
     params: &ReduceParams,
     progress: &mut dyn Progress,
 ) -> Result<(Clustering, Octree)> {
+    let count = match quotas {
+        Quotas::Total(count) => count,
+        Quotas::Local(_) => density.count(),
+    };
     let capacity = cell_points(count, tree.points.len(), params);
     let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
-    let quotas = density::quotas(&density.shares(&cells), &cells, count);
+    let shares = density.shares(&cells);
+    let quotas = match quotas {
+        Quotas::Total(count) => density::quotas(&shares, &cells, count),
+        Quotas::Local(chance) => density::local_quotas(&shares, &cells, |cell| chance(cell.start)),
+    };
     let Density { spacing, share } = density;
     drop(share);
     let samples = Samples {

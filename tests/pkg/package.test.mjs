@@ -44,7 +44,7 @@ async function reached(names, found = new Set()) {
 }
 
 test('the tarball holds what the entries reach, documentation and licences, and nothing else', async () => {
-  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'light', 'samples'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
+  const wasm = ['single', 'threads', 'files', 'las', 'e57', 'packed', 'pictures', 'exports', 'prepare', 'light', 'tiles', 'samples'].map((name) => `wasm/${name}/pointweave_bg.wasm`);
   const entries = [manifest.exports, manifest.bin].flatMap(targets).filter((name) => !name.includes('*'));
   const needed = await reached([...entries, ...wasm]);
   const documents = tarball.contents.filter((name) => /^docs\/[a-z-]+\.md$/.test(name));

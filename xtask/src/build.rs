@@ -35,6 +35,8 @@ pub enum Build {
     Prepare,
     /// Meshes with fewer triangles alone.
     Light,
+    /// The steps of tiles alone.
+    Tiles,
     /// Sample scans alone.
     Samples,
     /// The readers of what is packed as a whole.
@@ -42,7 +44,7 @@ pub enum Build {
 }
 
 impl Build {
-    pub const ALL: [Build; 11] = [
+    pub const ALL: [Build; 12] = [
         Build::Single,
         Build::Threads,
         Build::Files,
@@ -54,6 +56,7 @@ impl Build {
         Build::Packed,
         Build::Prepare,
         Build::Light,
+        Build::Tiles,
     ];
     /// Those with the whole engine.
     pub const ENGINES: [Build; 2] = [Build::Single, Build::Threads];
@@ -69,6 +72,7 @@ impl Build {
             Self::Exports => "exports",
             Self::Prepare => "prepare",
             Self::Light => "light",
+            Self::Tiles => "tiles",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -86,6 +90,7 @@ impl Build {
             Self::Exports => "exports",
             Self::Prepare => "prepare",
             Self::Light => "light",
+            Self::Tiles => "tiles",
             Self::Samples => "samples",
             Self::Packed => "packed",
         }
@@ -104,6 +109,7 @@ impl Build {
             | Self::Samples
             | Self::Prepare
             | Self::Light
+            | Self::Tiles
             | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[

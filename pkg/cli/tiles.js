@@ -1,0 +1,179 @@
+/** A scan of any size as tiles that a page streams: all steps on this machine, or one of them for a scheduler. */
+import { readdir, stat } from 'node:fs/promises';
+import { join } from 'node:path';
+import { isScan } from '../files/archive.js';
+import { compressorFor } from '../files/compressor.js';
+import { Folder } from '../tiles/folder.js';
+import { MANIFEST, PLAN, STAGES, TILESET, countsPath } from '../tiles/plan.js';
+import { runStep } from '../tiles/run-step.js';
+import { Workers, runAll } from '../tiles/schedule.js';
+import { plan, planOf } from '../tiles/steps.js';
+import { makeFolder } from './files.js';
+import { say } from './say.js';
+import { UsageError } from './usage.js';
+
+/** @import { Plan } from '../tiles/plan.js' */
+/** @import { TilesSaid } from './tiles-flags.js' */
+
+/** Bytes a sorted point takes without its scalars, and a tile's point in files. */
+const SORTED = 15;
+const SHOWN = 18;
+
+/**
+ * @param {{ json: boolean }} task
+ * @param {TilesSaid} said
+ * @param {AbortSignal} signal
+ * @returns {Promise<boolean>}
+ */
+export async function tiles({ json }, said, signal) {
+  const folder = new Folder(said.folder, signal);
+  if (said.step) {
+    await step(folder, said);
+    return true;
+  }
+  const start = performance.now();
+  const inputs = await inputsOf(said.inputs);
+  await compressorFor(said.options.meshopt); // that its packages are missing is known before the work
+  await makeFolder(said.folder);
+  if (await isDone(folder, said)) {
+    say(`${said.folder}: nothing to do`);
+    return true;
+  }
+  const workers = new Workers(folder, said.jobs);
+  try {
+    const made = await planned(workers, inputs, said);
+    await runAll(workers, made.tasks, inputs, teller(made));
+  } finally {
+    await workers.end();
+  }
+  const manifest = await folder.json(MANIFEST);
+  if (!said.keepWork) await folder.remove('work');
+  if (json) process.stdout.write(`${JSON.stringify(manifest, null, 2)}\n`);
+  const { points, reduced, tiles: count, strays } = manifest;
+  const left = strays ? `, ${strays} far from all others were left out` : '';
+  say(`${said.folder}: ${grouped(points)} points to ${grouped(reduced)} in ${count} tiles, ${((performance.now() - start) / 1000).toFixed(1)} s${left}`);
+  return true;
+}
+
+/**
+ * Counts what is not counted, and plans; or goes on with the plan that is there.
+ * @param {Workers} workers @param {string[]} inputs @param {TilesSaid} said
+ */
+async function planned(workers, inputs, { options, resume, folder: path }) {
+  const { folder } = workers;
+  const names = await Promise.all(inputs.map(async (input) => ({ path: input, bytes: (await stat(input)).size })));
+  const key = JSON.stringify({ options, names });
+  const there = await folder.has('work/inputs.json');
+  if (there && !resume) throw new UsageError(`'${path}' has the work of an earlier run: --resume goes on with it, or remove ${join(path, 'work')}`);
+  if (there && JSON.stringify(await folder.json('work/inputs.json')) !== key) throw new UsageError(`'${path}' has the work of other scans or options: remove ${join(path, 'work')}`);
+  await folder.writeJson('work/inputs.json', JSON.parse(key));
+  if (await folder.has(PLAN)) return planOf(folder);
+  let counted = 0;
+  await inTurn(workers, inputs, async (input, i) => {
+    if (!(await folder.has(countsPath(i)))) await workers.run({ stage: 'count', tile: `${i}`, input, read: options.read });
+    say(`counted ${++counted} of ${inputs.length}: ${input}`);
+  });
+  const made = await plan(folder, inputs.length, options);
+  const points = made.inputs.reduce((sum, input) => sum + input.points, 0);
+  const bytes = points * (SORTED + SHOWN / 3 + 4 * made.names.length);
+  say(`${grouped(points)} points in ${made.octree.leaves.length} tiles and ${made.octree.inner.length} above them; the work takes about ${sized(bytes)} of disk`);
+  return made;
+}
+
+/**
+ * For each input, as many at a time as there are workers.
+ * @param {Workers} workers @param {string[]} inputs @param {(input: string, i: number) => Promise<void>} each
+ */
+async function inTurn({ most }, inputs, each) {
+  let next = 0;
+  const work = async () => {
+    while (next < inputs.length) {
+      const i = next++;
+      await each(inputs[i], i);
+    }
+  };
+  await Promise.all(Array.from({ length: Math.min(most, inputs.length) }, work));
+}
+
+/** Tells of every stage when it is done, and on a terminal of every task. @param {Plan} plan */
+function teller({ tasks }) {
+  const start = performance.now();
+  const total = (/** @type {string} */ stage) => tasks.filter((task) => task.stage === stage).length;
+  const heavy = tasks.reduce((sum, { weight = 0 }) => sum + weight, 0);
+  /** @type {Map<string, number>} */
+  const counts = new Map();
+  let weight = 0;
+  /** @param {import('../tiles/plan.js').PlannedTask} task @param {number} done @param {number} all */
+  return (task, done, all) => {
+    const count = (counts.get(task.stage) ?? 0) + 1;
+    counts.set(task.stage, count);
+    weight += task.weight ?? 0;
+    const share = heavy > 0 ? weight / heavy : done / all;
+    const left = share > 0 ? ((performance.now() - start) / 1000) * (1 / share - 1) : 0;
+    const { stderr } = process;
+    if (stderr.isTTY) stderr.write(`\r${task.stage} ${count}/${total(task.stage)}, about ${Math.ceil(left)} s left\x1b[K${done === all ? '\r\x1b[K' : ''}`);
+    else if (count === total(task.stage)) say(`${task.stage}: ${count} of ${count}`);
+  };
+}
+
+/** Whether an earlier run made the same of the same. @param {Folder} folder @param {TilesSaid} said */
+async function isDone(folder, { resume }) {
+  if (!(await folder.has(MANIFEST)) || !(await folder.has(TILESET)) || (await folder.has('work'))) return false;
+  if (resume) return true;
+  throw new UsageError(`'${folder.path}' has a tileset: remove it, or choose another folder`);
+}
+
+/** @param {Folder} folder @param {TilesSaid} said */
+async function step(folder, { step: name, inputs, options, tile, input, stage }) {
+  if (name === 'count') {
+    const [path] = inputs;
+    if (!path || inputs.length > 1 || tile === undefined) throw new UsageError('tiles count needs one file, and its number as --tile');
+    return runStep(folder, { stage: 'count', tile, input: path, read: options.read });
+  }
+  if (name === 'plan') {
+    if (inputs.length === 0) throw new UsageError('tiles plan needs the files, in the order of their numbers');
+    for (const [i, path] of inputs.entries()) if (!(await folder.has(countsPath(i)))) await runStep(folder, { stage: 'count', tile: `${i}`, input: path, read: options.read });
+    await plan(folder, inputs.length, options);
+    return folder.writeJson('work/paths.json', inputs);
+  }
+  const { tasks } = await planOf(folder);
+  if (name === 'list') {
+    if (!STAGES.some((known) => known === stage)) throw new UsageError(`--stage is ${stage === undefined ? 'missing' : `'${stage}'`}: expected one of ${STAGES.join(', ')}`);
+    const listed = tasks.filter((task) => task.stage === stage).map((task) => `${task.tile ?? task.id}\n`);
+    return void process.stdout.write(listed.join(''));
+  }
+  const known = tasks.find((task) => task.stage === name && (task.tile === tile || task.tile === undefined));
+  if (!known) throw new UsageError(`tiles ${name} needs --tile, one of those that tiles list --stage ${name} prints`);
+  const path = name === 'sort' ? (input ?? (await folder.json('work/paths.json'))[Number(tile)]) : undefined;
+  return runStep(folder, { stage: /** @type {any} */ (name), tile, input: path });
+}
+
+/**
+ * Files, and the scans of folders; in an order that does not depend on the disk.
+ * @param {string[]} sources
+ */
+async function inputsOf(sources) {
+  const inputs = [];
+  for (const source of sources) {
+    const there = await stat(source).catch(() => undefined);
+    if (!there) throw new UsageError(`'${source}': there is no such file or folder`);
+    if (!there.isDirectory()) inputs.push(source);
+    else {
+      const within = await readdir(source, { recursive: true, withFileTypes: true });
+      const scans = within.filter((entry) => entry.isFile() && isScan(entry.name)).map(({ parentPath, path = parentPath, name }) => join(path, name));
+      inputs.push(...scans.sort());
+    }
+  }
+  if (inputs.length === 0) throw new UsageError(`there are no scans in ${sources.join(', ')}`);
+  return inputs;
+}
+
+/** @param {number} count */
+function grouped(count) {
+  return count.toLocaleString('en-US');
+}
+
+/** @param {number} bytes */
+function sized(bytes) {
+  return bytes < 1e9 ? `${Math.ceil(bytes / 1e6)} MB` : `${(bytes / 1e9).toFixed(1)} GB`;
+}

@@ -1,0 +1,81 @@
+/** The points of a file, block by block, as tiles take them. */
+import { basename } from 'node:path';
+import { besideOf, openInput } from '../cli/files.js';
+import { PointweaveError } from '../engine/errors.js';
+import { byteSourceOf } from '../files/byte-source.js';
+import { kept, leftOutOf } from '../files/left-out.js';
+import { toBytes } from '../files/point-columns.js';
+import { readBlocks, readerError, readerOf } from '../files/reading.js';
+import { withModule } from './modules.js';
+
+/** @import { Block, Summary } from '../files/point-columns.js' */
+
+/** Coordinates of this size or more are none: `src/formats/sentinels.rs`. */
+const HUGE = 1e30;
+
+/**
+ * What only the whole file tells, as far as its points need it.
+ * @typedef {Pick<Summary, 'format' | 'colorScale' | 'hasColors' | 'leftOut' | 'attributes' | 'unit' | 'up' | 'dropped'>} Told
+ */
+
+/**
+ * @param {string} path
+ * @param {Record<string, any>} options of the reader
+ * @param {AbortSignal} signal
+ * @param {(block: Block) => Promise<void>} take
+ * @returns {Promise<Summary>}
+ */
+export async function readScan(path, options, signal, take) {
+  const file = byteSourceOf(await openInput(path, signal));
+  const reader = await readerOf(file, options.format);
+  const helpers = { find: besideOf(path), decode: async () => undefined };
+  const read = (/** @type {import('./modules.js').Ask} */ ask) => readBlocks(ask, file, { name: basename(path), ...options }, { signal }, helpers, take);
+  try {
+    return (await withModule(reader, signal, read)).summary;
+  } catch (error) {
+    const told = readerError(error, reader);
+    const { message, ...fields } = /** @type {any} */ (told);
+    throw told instanceof PointweaveError ? new PointweaveError({ ...fields, code: told.code, message: `${basename(path)}: ${message}` }) : told;
+  }
+}
+
+/** As JSON takes it. @param {Summary} summary @returns {Told} */
+export function toldOf({ format, colorScale, hasColors, leftOut, attributes, unit, up, dropped }) {
+  const noData = leftOut.noData.map((values) => Array.from(values));
+  return { format, colorScale, hasColors, leftOut: /** @type {any} */ ({ ...leftOut, noData, noReturns: Array.from(leftOut.noReturns) }), attributes, unit, up, dropped };
+}
+
+/** Whether some of the file's points stand for none. @param {Told} told */
+export function leavesOut({ leftOut: { huge, noData, noReturns } }) {
+  return huge || noReturns.length > 0 || noData.some((values) => values.length > 0);
+}
+
+/**
+ * The positions of a block without those that stand for none; before the whole file has told which they are, without those that
+ * are beyond all others.
+ * @param {Block} block
+ * @param {Told} [told]
+ */
+export function positionsOf({ positions }, told) {
+  const leftOut = told?.leftOut ?? { huge: positions.some((x) => Math.abs(x) >= HUGE), noData: [], noReturns: new Float64Array(0) };
+  const out = leftOutOf(positions, leftOut);
+  return out ? kept(positions, out, 3) : positions;
+}
+
+/**
+ * What belongs to the points of a block, in the order of {@link positionsOf}.
+ * @param {Block} block
+ * @param {Told} told
+ * @param {string[]} wanted names of scalars
+ * @returns {{ colors?: Uint8Array, names: string[], values: Float32Array[] }}
+ */
+export function columnsOf({ positions, colors, names, values }, told, wanted) {
+  const out = leftOutOf(positions, told.leftOut);
+  const bytes = told.hasColors && colors ? (colors instanceof Uint8Array ? colors : toBytes(colors, told.colorScale)) : undefined;
+  const indices = names.flatMap((name, i) => (wanted.includes(name) && told.attributes.includes(name) ? [i] : []));
+  return {
+    ...(bytes && { colors: out ? kept(bytes, out, 3) : bytes }),
+    names: indices.map((i) => names[i]),
+    values: indices.map((i) => (out ? kept(values[i], out, 1) : values[i])),
+  };
+}

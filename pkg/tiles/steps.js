@@ -1,0 +1,306 @@
+/** The steps of tiles, each by its stage: what it reads from the folder and what it writes there. They hold nothing between them. */
+import { appendFile, mkdir, rename, stat } from 'node:fs/promises';
+import { basename } from 'node:path';
+import { compressorFor } from '../files/compressor.js';
+import { PointweaveError } from '../engine/errors.js';
+import { decode, encode, joined, selected } from './columns.js';
+import { sha256 } from './folder.js';
+import { version, withModule } from './modules.js';
+import { DENSITY, MANIFEST, PLAN, TILESET, countsPath, factsPath, glbPath, madePath, samplePath, sortedPath, tasksOf } from './plan.js';
+import { columnsOf, leavesOut, positionsOf, readScan, toldOf } from './scan.js';
+import { tilesetOf } from './tileset.js';
+
+/** @import { Columns } from './columns.js' */
+/** @import { Folder } from './folder.js' */
+/** @import { Plan, Planned, TileOptions } from './plan.js' */
+
+const VERSION = 1;
+/** Scalars that are kept if a file has them. */
+const COMMON = ['intensity', 'classification'];
+/** Bytes of sorted points that are kept before they are written. */
+const BUFFER = 64 << 20;
+
+/**
+ * Counts an input's points.
+ * @param {Folder} folder
+ * @param {number} index
+ * @param {string} path
+ * @param {Record<string, any>} read
+ */
+export async function count(folder, index, path, read) {
+  const name = basename(path);
+  await withModule('tiles', folder.signal, async (ask) => {
+    let points = 0;
+    /** @param {import('./scan.js').Told} [told] */
+    const pass = async (told) => {
+      points = 0;
+      await ask({ call: 'takeCounts', args: [] });
+      return toldOf(await readScan(path, read, folder.signal, async (block) => {
+        const positions = positionsOf(block, told);
+        points += positions.length / 3;
+        await ask({ call: 'countPoints', args: [positions, []] });
+      }));
+    };
+    let told = await pass();
+    // Which points are none is known now.
+    if (leavesOut(told)) told = await pass(told);
+    /** @type {Uint8Array} */
+    const counts = await ask({ call: 'takeCounts', args: [] });
+    const { size } = await stat(path);
+    await folder.writeJson(countsPath(index), { name, bytes: size, points, told, counts: Buffer.from(counts).toString('base64') });
+  });
+}
+
+/**
+ * Makes the plan of inputs that are counted.
+ * @param {Folder} folder
+ * @param {number} inputs how many
+ * @param {TileOptions} options
+ * @returns {Promise<Plan>}
+ */
+export async function plan(folder, inputs, options) {
+  const counted = [];
+  for (let i = 0; i < inputs; i++) counted.push(await folder.json(countsPath(i)));
+  const counts = counted.map(({ counts: text }) => new Uint8Array(Buffer.from(text, 'base64')));
+  /** @type {import('./plan.js').Octree} */
+  const octree = await withModule('tiles', folder.signal, (ask) => ask({ call: 'planTiles', args: [counts, options.tilePoints] }));
+  const kept = [...COMMON, ...Object.keys(options.attributes)];
+  const names = kept.filter((name, i) => kept.indexOf(name) === i && counted.some(({ told }) => told.attributes.includes(name)));
+  const units = new Set(counted.map(({ told }) => told.unit));
+  const [unit] = units.size === 1 ? units : [];
+  /** @type {Plan} */
+  const made = {
+    version: VERSION,
+    made: `pointweave ${await version()}`,
+    options,
+    inputs: counted.map(({ name, bytes, points }) => ({ name, bytes, points })),
+    names,
+    unit: options.unit ?? unit,
+    octree,
+    tasks: tasksOf(octree),
+  };
+  await folder.writeJson(PLAN, made);
+  return made;
+}
+
+/** @param {Folder} folder @returns {Promise<Plan>} */
+export async function planOf(folder) {
+  const found = await folder.json(PLAN);
+  if (found.version !== VERSION) throw new PointweaveError({ code: 'bad-file', message: `${folder.at(PLAN)} is of another version of pointweave: start anew in an empty folder`, expected: VERSION, found: found.version });
+  return found;
+}
+
+/**
+ * Puts an input's points into files, one a leaf.
+ * @param {Folder} folder
+ * @param {number} index
+ * @param {string} path where it lies here
+ */
+export async function sort(folder, index, path) {
+  const { octree, options, names } = await planOf(folder);
+  const { told } = await folder.json(countsPath(index));
+  const leaves = octree.leaves.map(({ tile }) => tile);
+  const part = `work/sorted/${index}.part`;
+  await folder.remove(part);
+  await mkdir(folder.at(part), { recursive: true });
+  /** @type {Map<string, Uint8Array[]>} */
+  const waiting = new Map();
+  let held = 0;
+  const flush = async () => {
+    for (const [tile, blocks] of waiting) await appendFile(folder.at(`${part}/${tile}.bin`), Buffer.concat(blocks));
+    waiting.clear();
+    held = 0;
+  };
+  await withModule('tiles', folder.signal, async (ask) => {
+    await ask({ call: 'openLeaves', args: [octree, leaves] });
+    await readScan(path, options.read, folder.signal, async (block) => {
+      const { places, order, tiles, counts } = await ask({ call: 'splitPoints', args: [positionsOf(block, told), []] });
+      const columns = columnsOf(block, told, names);
+      let from = 0;
+      tiles.forEach((/** @type {string} */ tile, /** @type {number} */ i) => {
+        const to = from + counts[i];
+        const points = selected({ places: new Uint32Array(0), ...columns }, order.subarray(from, to));
+        const bytes = encode({ ...points, places: places.subarray(3 * from, 3 * to) });
+        waiting.set(tile, [...(waiting.get(tile) ?? []), bytes]);
+        held += bytes.length;
+        from = to;
+      });
+      if (held > BUFFER) await flush();
+    });
+  });
+  await flush();
+  await folder.remove(`work/sorted/${index}`);
+  await rename(folder.at(part), folder.at(`work/sorted/${index}`));
+}
+
+/**
+ * Takes a sample of a leaf.
+ * @param {Folder} folder
+ * @param {string} tile
+ */
+export async function measure(folder, tile) {
+  const { octree } = await planOf(folder);
+  const { files } = found(octree.leaves, tile);
+  const { places } = joined(await blocksOf(folder, files.map(([input]) => sortedPath(input, tile))), []);
+  const { indices, range } = await withModule('tiles', folder.signal, (ask) => ask({ call: 'sampleTile', args: [tile, places] }));
+  const head = new TextEncoder().encode(`${JSON.stringify({ range, points: places.length / 3 })}\n`);
+  const { places: some } = selected({ places, names: [], values: [] }, indices);
+  await folder.write(samplePath(tile), Buffer.concat([head, Buffer.alloc((4 - (head.length % 4)) % 4, ' '), Buffer.from(some.buffer)]));
+}
+
+/**
+ * Measures the scan by the samples.
+ * @param {Folder} folder
+ */
+export async function density(folder) {
+  const { octree, options, tasks, inputs } = await planOf(folder);
+  const samples = [];
+  for (const { tile } of tasks.filter(({ stage }) => stage === 'measure')) {
+    const bytes = await folder.read(samplePath(/** @type {string} */ (tile)));
+    const end = bytes.indexOf(10) + 1;
+    const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
+    const start = Math.ceil(end / 4) * 4;
+    samples.push({ ...head, places: new Uint32Array(bytes.buffer, start, (bytes.length - start) / 4) });
+  }
+  const measured = samples.reduce((sum, { points }) => sum + points, 0);
+  const all = inputs.reduce((sum, { points }) => sum + points, 0) - octree.strays;
+  // The leaves that are measured stand for all.
+  const weighted = samples.map((sample) => ({ ...sample, points: (sample.points * all) / measured }));
+  const args = [weighted, octree, options.target, { curvatureWeight: options.curvatureWeight }];
+  await folder.writeJson(DENSITY, await withModule('tiles', folder.signal, (ask) => ask({ call: 'measureTiles', args })));
+}
+
+/**
+ * Reduces a leaf.
+ * @param {Folder} folder
+ * @param {string} tile
+ */
+export async function make(folder, tile) {
+  const made = await planOf(folder);
+  const { around } = found(made.octree.leaves, tile);
+  const files = around.flatMap((other) => found(made.octree.leaves, other).files.map(([input]) => sortedPath(input, other)));
+  await reduced(folder, made, found(made.octree.leaves, tile), files);
+}
+
+/**
+ * Reduces a tile above leaves from the reduced points below it.
+ * @param {Folder} folder
+ * @param {string} tile
+ */
+export async function level(folder, tile) {
+  const made = await planOf(folder);
+  const planned = found(made.octree.inner, tile);
+  await reduced(folder, made, planned, planned.around.map(madePath));
+}
+
+/** @param {Folder} folder @param {Plan} plan @param {Planned} planned @param {string[]} files */
+async function reduced(folder, { octree, options, names }, { tile, level: of }, files) {
+  const measures = await folder.json(DENSITY);
+  const carried = Object.fromEntries(names.map((name) => [name, options.attributes[name] ?? (name === 'classification' ? 'majority' : 'mean')]));
+  const result = await withModule('tiles', folder.signal, async (ask) => {
+    /** @type {number[]} */
+    const range = await ask({ call: 'tileSurroundings', args: [tile, of, octree, measures] });
+    const given = joined(await blocksOf(folder, files, range), names);
+    return ask({ call: 'reduceTile', args: [given, tile, of, octree, measures, { attributes: carried }] });
+  });
+  /** @type {Columns} */
+  const made = { names, ...result };
+  const { low, high } = boxOf(made.places, octree.size);
+  const center = low.map((x, axis) => (x + high[axis]) / 2);
+  const glb = await withModule('exports', folder.signal, (ask) => ask({ call: 'write', args: [cloudOf(made, octree.size, center), { format: 'glb', quantize: true }] }));
+  const compress = await compressorFor(options.meshopt);
+  const bytes = compress ? await compress(glb) : glb;
+  await folder.write(glbPath(tile), bytes);
+  await folder.write(madePath(tile), encode(made));
+  await folder.writeJson(factsPath(tile), { tile, level: of, points: made.places.length / 3, low, high, bytes: bytes.length, sha256: sha256(bytes) });
+}
+
+/**
+ * A cloud around a place in the root's cube, whose axes are written as those of a scan with z up: what shows tiles turns them back.
+ * @param {Columns} columns @param {number} size @param {number[]} center
+ */
+function cloudOf({ places, colors, names, values }, size, center) {
+  const step = size / 2 ** 32;
+  return {
+    positions: Float32Array.from(places, (x, i) => x * step - center[i % 3]),
+    colors,
+    attributes: Object.fromEntries(names.map((name, i) => [name, values[i]])),
+    origin: center,
+    up: [0, 0, 1],
+  };
+}
+
+/** @param {Uint32Array} places @param {number} size of the root */
+function boxOf(places, size) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  places.forEach((x, i) => {
+    low[i % 3] = Math.min(low[i % 3], x);
+    high[i % 3] = Math.max(high[i % 3], x);
+  });
+  const step = size / 2 ** 32;
+  return { low: low.map((x) => x * step), high: high.map((x) => x * step) };
+}
+
+/**
+ * Writes the tileset.
+ * @param {Folder} folder
+ */
+export async function finish(folder) {
+  const made = await planOf(folder);
+  const { octree, inputs, options } = made;
+  const facts = [];
+  for (const { tile } of [...octree.inner.toReversed(), ...octree.leaves]) facts.push(await folder.json(factsPath(tile)));
+  const measures = await folder.json(DENSITY);
+  const text = new TextEncoder().encode(`${JSON.stringify(tilesetOf(made, facts, measures))}\n`);
+  await folder.write(TILESET, text);
+  /** @type {[string, { bytes: number, sha256: string }][]} */
+  const files = [[TILESET, { bytes: text.length, sha256: sha256(text) }], ...facts.map((/** @type {any} */ { tile, bytes, sha256: hash }) => /** @type {[string, any]} */ ([glbPath(tile), { bytes, sha256: hash }]))];
+  const leaves = facts.filter((fact) => fact.level === 0);
+  await folder.writeJson(MANIFEST, {
+    version: VERSION,
+    made: made.made,
+    options,
+    inputs,
+    points: inputs.reduce((sum, { points }) => sum + points, 0),
+    strays: octree.strays,
+    reduced: leaves.reduce((sum, { points }) => sum + points, 0),
+    tiles: facts.length,
+    spacing: measures.target,
+    noise: measures.noise,
+    files: Object.fromEntries(files),
+  });
+}
+
+/**
+ * The points of files; where a range is given, those in it.
+ * @param {Folder} folder @param {string[]} files @param {ArrayLike<number>} [range] lower corner, and the first place beyond
+ */
+async function blocksOf(folder, files, range) {
+  const blocks = [];
+  for (const file of files) {
+    const read = decode(await folder.read(file));
+    blocks.push(...(range ? read.map((block) => inRange(block, range)) : read));
+  }
+  return blocks;
+}
+
+/** @param {Columns} columns @param {ArrayLike<number>} range @returns {Columns} */
+function inRange(columns, range) {
+  const { places } = columns;
+  const [x0, y0, z0, x1, y1, z1] = Array.from(range);
+  const indices = new Uint32Array(places.length / 3);
+  let inside = 0;
+  for (let i = 0; i < places.length; i += 3) {
+    const [x, y, z] = [places[i], places[i + 1], places[i + 2]];
+    if (x >= x0 && x < x1 && y >= y0 && y < y1 && z >= z0 && z < z1) indices[inside++] = i / 3;
+  }
+  return inside === indices.length ? columns : selected(columns, indices.subarray(0, inside));
+}
+
+/** @param {Planned[]} tiles @param {string} tile */
+function found(tiles, tile) {
+  const planned = tiles.find((other) => other.tile === tile);
+  if (!planned) throw new PointweaveError({ code: 'bad-option', message: `there is no tile ${tile} of that stage`, expected: 'a tile of the plan', found: tile });
+  return planned;
+}
