@@ -11,7 +11,7 @@ from distributed import Client, LocalCluster
 
 from pointweave_dask import npm
 
-OPTIONS = {"spacing": 0.1, "tile_points": 400}
+OPTIONS = {"spacing": 0.1, "tile_points": 1000}
 
 
 @pytest.fixture(scope="session")
