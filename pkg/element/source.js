@@ -3,7 +3,7 @@
  * package to read, and what a view needs of it is computed when the view is wanted.
  */
 import { sharedEngine } from './engines.js';
-import { fetchBytes } from './fetching.js';
+import { fetchBytes } from '../viewer/fetching.js';
 import { inTurn } from './turns.js';
 
 /** @import { EngineOptions, Orientation, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
