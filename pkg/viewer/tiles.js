@@ -27,7 +27,7 @@ const LEAST_BUDGET = 2 ** 20;
 const MOST_OBJECTS = 190;
 const DOWNLOADS = 6;
 /** Tiles whose downloads are read at once. */
-const PARSED = 2;
+const PARSED = 4;
 /** So often a download is tried, after so long; twice as long each time. */
 const TRIES = 3;
 const PAUSE_MS = 400;
@@ -108,11 +108,13 @@ export class Tiles {
     renderer.parseQueue = Object.assign(new PriorityQueue(), { priorityCallback: parseQueue.priorityCallback, maxJobs: PARSED });
     renderer.manager = loading();
     renderer.calculateBytesUsed = (/** @type {any} */ tile) => this.#sizeOf(tile);
+    // It warns of every tileset of version 1.1, and does no more.
+    renderer.preprocessTileset = (/** @type {any} */ { root }, /** @type {string} */ url, parent = null) =>
+      renderer.preprocessNode(root, new URL('.', url).href.replace(/\/$/, ''), parent);
     renderer.registerPlugin(this.#fades);
     renderer.registerPlugin({
       name: 'POINTWEAVE_TILES',
-      loadRootTileset: async () => (renderer.preprocessNode(tileset.root, new URL('.', address).href.replace(/\/$/, ''), null), tileset),
-      fetchData: fetchPatiently,
+      fetchData: async (/** @type {string} */ url, /** @type {RequestInit} */ options) => (url === address ? tileset : fetchPatiently(url, options)),
       processTileModel: (/** @type {any} */ scene, /** @type {any} */ tile) => this.#receive(scene, tile),
     });
     renderer.addEventListener('tile-visibility-change', (/** @type {any} */ { scene, visible }) => this.#show(scene, visible));
