@@ -7,7 +7,7 @@ import { Box3, Matrix4, Points } from 'three';
 import { PointweaveError } from '../engine/errors.js';
 import { badInput } from '../engine/inputs.js';
 import { Fades } from './fade.js';
-import { frameBetween, joined } from './frame.js';
+import { ITSELF, frameBetween, joined } from './frame.js';
 import { placedPositions } from './glb.js';
 import { bytesOf, dress, loading, objectsOf, texturesOf } from './tile-content.js';
 import { tilesPackage } from './tiles-package.js';
@@ -33,6 +33,8 @@ const TRIES = 3;
 const PAUSE_MS = 400;
 /** In CSS pixels: between points, of meshes whose error is the distance of their vertices, and as most tilesets are made for. */
 const ERRORS = { points: 2, mesh: 6, other: 16 };
+/** So much coarser it becomes at a time, for lack of room. */
+const STEP = 1.15;
 /** Nearer than so many finest distances between points there is nothing to see. */
 const NEAR_SPACINGS = 25;
 const NEAREST = { least: 1e-5, most: 0.02 };
@@ -43,11 +45,11 @@ const OUTLINE = 4096;
 
 export class Tiles {
   /** The box of the root, in the tileset's frame. @type {Frame} */
-  frame;
+  frame = ITSELF;
   /** A few points of what is there, in the frame. */
   outline = new Float32Array();
   /** How near one may come, in the frame. */
-  nearest;
+  nearest = NEAREST.most;
   up = /** @type {[number, number, number]} */ ([0, 0, 1]);
   /** Something in it has a material that is lit. */
   lit = false;
@@ -62,10 +64,11 @@ export class Tiles {
   #asked;
   /** How many times larger the error is than it should be, for lack of room. */
   #strain = 1;
+  /** Bytes of the tiles that are here. @type {Map<object, number>} */
+  #sizes = new Map();
   #held = 0;
   /** Bytes of the largest tile so far: so much is kept free for each that is under way. */
   #largest = 0;
-  #sizes = new WeakMap();
   #seen = '';
   #said = '';
   #hearer;
@@ -116,15 +119,13 @@ export class Tiles {
       name: 'POINTWEAVE_TILES',
       fetchData: async (/** @type {string} */ url, /** @type {RequestInit} */ options) => (url === address ? tileset : fetchPatiently(url, options)),
       processTileModel: (/** @type {any} */ scene, /** @type {any} */ tile) => this.#receive(scene, tile),
+      disposeTile: (/** @type {any} */ tile) => this.#forget(tile),
     });
     renderer.addEventListener('tile-visibility-change', (/** @type {any} */ { scene, visible }) => this.#show(scene, visible));
-    renderer.addEventListener('load-model', (/** @type {any} */ { tile }) => this.#count(tile, 1));
-    renderer.addEventListener('dispose-model', (/** @type {any} */ { tile }) => this.#count(tile, -1));
+    renderer.addEventListener('load-model', (/** @type {any} */ { tile }) => this.#welcome(tile));
     renderer.addEventListener('load-error', (/** @type {any} */ { tile, error }) => this.#miss(tile, error));
     renderer.addEventListener('needs-update', () => this.#hearer.changed());
     this.#makeRoom();
-    const { spacing } = this;
-    this.nearest = spacing; // until the box is known
   }
 
   /** Has the root's box found. */
@@ -139,9 +140,9 @@ export class Tiles {
     this.frame = frameBetween(/** @type {[number, number, number]} */ (min.toArray()), /** @type {[number, number, number]} */ (max.toArray()));
     const { center, size, diagonal } = this.frame;
     this.outline = Float32Array.from({ length: 24 }, (_, i) => ((Math.floor(i / 3) >> i % 3) & 1 ? 0.5 : -0.5) * size[i % 3] / diagonal);
-    this.nearest = Math.min(NEAREST.most, Math.max(NEAREST.least, (NEAR_SPACINGS * this.spacing) / diagonal));
+    this.nearest = Math.min(NEAREST.most, Math.max(NEAREST.least, (NEAR_SPACINGS * spacingOf(this.#tileset)) / diagonal));
     // A region is a part of the Earth, which is told from its centre.
-    if ('region' in this.#tileset.root.boundingVolume) this.up = /** @type {[number, number, number]} */ (center.map((x) => x / Math.hypot(...center)));
+    if ('region' in (this.#tileset.root.boundingVolume ?? {})) this.up = /** @type {[number, number, number]} */ (center.map((x) => x / Math.hypot(...center)));
     const { group } = renderer;
     group.scale.setScalar(1 / diagonal);
     group.position.set(...center).divideScalar(-diagonal);
@@ -152,10 +153,6 @@ export class Tiles {
   /** Resolves when something is there to be seen. @returns {Promise<void>} */
   get there() {
     return this.kind ? Promise.resolve() : new Promise((resolve, reject) => (this.#waiting = { resolve, reject }));
-  }
-
-  get spacing() {
-    return spacingOf(this.#tileset);
   }
 
   /** @returns {StreamState} */
@@ -204,11 +201,11 @@ export class Tiles {
     for (let i = 0; i < 40 && this.#objects > MOST_OBJECTS; i++) {
       this.#fades.hurry();
       if (this.#objects <= MOST_OBJECTS) break;
-      this.#strain *= 1.2;
+      this.#strain *= STEP;
       this.#choose();
     }
     const { refused } = renderer.stats;
-    if (refused && this.#used > 0.75 * this.#room) this.#strain *= 1.15;
+    if (refused && this.#used > 0.75 * this.#room) this.#strain *= STEP;
     this.#fades.step();
     if (refused || this.#fades.running) this.#hearer.changed();
     this.#tell();
@@ -223,7 +220,7 @@ export class Tiles {
   #relax(view) {
     if (view === this.#seen) return;
     this.#seen = view;
-    if (this.#strain > 1 && this.#used < 0.6 * this.#room && this.#objects < 0.6 * MOST_OBJECTS) this.#strain = Math.max(1, this.#strain / 1.1);
+    if (this.#strain > 1 && this.#used < 0.6 * this.#room && this.#objects < 0.6 * MOST_OBJECTS) this.#strain = Math.max(1, this.#strain / STEP);
   }
 
   get #objects() {
@@ -250,31 +247,36 @@ export class Tiles {
   /** Of a tile; while it is under way, of the largest so far. @param {any} tile */
   #sizeOf(tile) {
     if (tile.internal.hasUnrenderableContent) return 0;
-    return this.#sizes.get(tile) ?? Math.max(1, this.#largest);
+    return this.#sizes.get(tile) ?? (this.#largest || this.#budget / 32);
   }
 
   /** A tile was read. @param {import('three').Object3D} scene @param {any} tile */
   #receive(scene, tile) {
     dress(scene, this.frame.diagonal);
     const bytes = bytesOf(scene);
-    this.#sizes.set(tile, bytes);
     if (bytes > this.#largest) {
       this.#largest = bytes;
       this.#makeRoom();
     }
-    if (this.#held + bytes <= this.#budget) return;
-    this.#strain *= 1.15;
-    throw new DOMException('there is no room', 'AbortError'); // it is fetched again should it still be wanted
+    if (this.#held + bytes > this.#budget) {
+      this.#strain *= STEP;
+      throw new DOMException('there is no room', 'AbortError'); // it is fetched again should it still be wanted
+    }
+    this.#sizes.set(tile, bytes);
+    this.#held += bytes;
   }
 
-  /** A tile came or went. @param {any} tile @param {1 | -1} sign */
-  #count(tile, sign) {
-    this.#held += sign * (this.#sizes.get(tile) ?? 0);
-    const { scene } = tile.engineData;
-    if (sign < 0 || !scene) return;
-    const objects = objectsOf(scene);
+  /** @param {any} tile */
+  #forget(tile) {
+    this.#held -= this.#sizes.get(tile) ?? 0;
+    if (!this.#sizes.delete(tile)) this.#hearer.changed(); // it was under way, and may be wanted again
+  }
+
+  /** A tile is there. @param {any} tile */
+  #welcome({ engineData }) {
+    const objects = objectsOf(engineData.scene);
     // The studio's light is the page's: it stays when a tile goes.
-    tile.engineData.textures = objects.flatMap(({ material }) => texturesOf(material));
+    engineData.textures = objects.flatMap(({ material }) => texturesOf(material));
     this.lit ||= objects.some(({ material }) => [material].flat().some((one) => 'roughness' in one));
   }
 
