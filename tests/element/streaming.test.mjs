@@ -258,3 +258,55 @@ test('another thing to show ends it; it frees what it holds; a lost context come
   assert.ok(freed.Buffer <= full.Buffer - 5, `${JSON.stringify(full)} ${JSON.stringify(freed)}`);
   assert.equal(await act(() => viewer.streamed), null);
 });
+
+test('the element: one tag, with camera, hotspots and what is told', async () => {
+  const [x, y, z] = ORIGIN;
+  const tag = `<point-weave src="${points}" alt="Hills" controls camera-orbit="0deg 40deg auto" interaction-prompt="none">
+    <button slot="hotspot-top" data-position="${x + 50}m ${y + 50}m ${z}m">Middle</button></point-weave>`;
+  const shown = await site.open(tag, { style: 'point-weave { width: 480px; height: 360px }' });
+  await shown.page.evaluate(() => {
+    window.told = [];
+    document.querySelector('point-weave').addEventListener('stream', ({ detail }) => told.push(detail));
+  });
+  const events = await shown.heard('load');
+  const { kind, view, points: some, triangles } = events.at(-1);
+  assert.deepEqual([kind, view, triangles], ['tiles', 'points', 0]);
+  assert.ok(some >= SIDE ** 2);
+  assert.equal(events.filter(({ type }) => type === 'progress').at(-1).overall, 1);
+  await shown.page.waitForFunction(() => told.at(-1)?.loading === 0 && told.at(-1).tiles > 1);
+  const said = await shown.element().evaluate((element) => {
+    const { x, y } = element.getDimensions();
+    const { theta, phi } = element.getCameraOrbit();
+    const { left, top, width, height } = element.querySelector('button').getBoundingClientRect();
+    const frame = element.getBoundingClientRect();
+    return { x, y, theta, polar: (phi * 180) / Math.PI, spot: [left + width / 2 - frame.left, top + height / 2 - frame.top], report: element.report };
+  });
+  assert.deepEqual([said.x, said.y, said.theta, Math.round(said.polar), said.report], [SIZE, SIZE, 0, 40, null]);
+  assert.ok(Math.abs(said.spot[0] - 240) < 2, said.spot.join());
+  assert.match(await shown.spoken(), /^Hills\. [\d,]+ points$/);
+  assert.equal(await shown.element().locator('fieldset').isVisible(), false, 'there is nothing to choose');
+  await shown.set({ src: '/ball.glb' });
+  await shown.loaded();
+  assert.equal(await shown.element().evaluate((element) => element.getDimensions().x.toFixed(3)), '2.000');
+  await shown.set({ src: mesh });
+  await shown.loaded();
+  assert.equal((await shown.events()).at(-1).view, 'mesh');
+  await shown.set({ src: '/no.json' });
+  const error = (await shown.heard('error')).at(-1);
+  assert.equal(error.code, 'bad-file');
+  assert.deepEqual(shown.faults, []);
+});
+
+test('the element in one file loads what streams when a tileset comes', async () => {
+  const shown = await site.open('<script type="module" src="/pointweave/element.min.js"></script><point-weave src="/ball.glb" alt="A ball"></point-weave>', {
+    define: false, imports: {}, style: 'point-weave { width: 480px; height: 360px }',
+  });
+  await shown.page.waitForFunction(() => document.querySelector('point-weave').loaded);
+  assert.ok(!shown.asked.some((path) => /tiles/.test(path)));
+  await shown.set({ src: points });
+  await shown.loaded();
+  assert.equal(shown.asked.filter((path) => /element-tiles\.min\.js/.test(path)).length, 1);
+  assert.ok(!shown.asked.some((path) => /node_modules/.test(path)));
+  assert.ok(silhouette(await shown.picture()).area > 5000);
+  assert.deepEqual(shown.faults, []);
+});
