@@ -169,7 +169,7 @@ test('levels fade into each other, unless a person wants less motion', async () 
       let twice = 0;
       viewer.addEventListener('draw', () => (twice = Math.max(twice, viewer.streamed.tiles)));
       viewer.firstLook = { distance: { share: 0.3 } };
-      await new Promise((next) => setTimeout(next, 1500));
+      await new Promise((next) => setTimeout(next, 900));
       return { most: twice, last: viewer.streamed.tiles };
     });
     assert.equal(seen.most > seen.last, fades, `${reducedMotion}: ${JSON.stringify(seen)}`);
