@@ -58,6 +58,7 @@ for (const [, names, module] of text.matchAll(/^import \{([^}]*)\} from "([^"]+)
   for (const name of names.split(',')) known.add(name.trim().split(' ')[0]);
   taken.set(module, known);
 }
+taken.set('three/addons/libs/meshopt_decoder.module.js', new Set(['MeshoptDecoder'])); // which is imported when it is needed
 
 await build({
   ...tiles,

@@ -1,7 +1,6 @@
 /** What a tile holds, as the viewer draws it: points and bare meshes in its own materials, all else as its file says. */
 import { LoadingManager, Mesh, Points, Texture, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { fadable } from './fade.js';
 import { frameOf, toFrame } from './frame.js';
 import { bareIn, dressMesh, dressPoints } from './glb.js';
@@ -28,7 +27,8 @@ class Loader extends GLTFLoader {
 }
 
 /** What the renderer loads with. */
-export function loading() {
+export async function loading() {
+  const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
   const manager = new LoadingManager();
   return manager.addHandler(/\.gl(tf|b)$/i, new Loader(manager).setMeshoptDecoder(MeshoptDecoder));
 }

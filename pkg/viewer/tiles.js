@@ -86,8 +86,9 @@ export class Tiles {
     if (!(budget >= LEAST_BUDGET)) throw badInput('budget', `at least ${LEAST_BUDGET} bytes`, budget);
     if (errorTarget !== undefined && !(errorTarget > 0)) throw badInput('errorTarget', 'a number of pixels above 0', errorTarget);
     const address = new URL(url, document.baseURI).href;
-    const [parts, tileset] = await Promise.all([tilesPackage(), fetchTileset(address, { signal, onProgress: (share) => onProgress(share / 2) })]);
-    const tiles = new Tiles(parts, tileset, { address, budget, errorTarget, stage, hearer });
+    const watch = { signal, onProgress: (/** @type {number} */ share) => onProgress(share / 2) };
+    const [parts, manager, tileset] = await Promise.all([tilesPackage(), loading(), fetchTileset(address, watch)]);
+    const tiles = new Tiles(parts, tileset, { address, manager, budget, errorTarget, stage, hearer });
     await tiles.#begin();
     return tiles;
   }
@@ -95,9 +96,9 @@ export class Tiles {
   /**
    * @param {import('./tiles-package.js').Package} parts
    * @param {import('./tileset.js').Tileset} tileset
-   * @param {{ address: string, budget: number, errorTarget: number | undefined, stage: Stage, hearer: Hearer }} options
+   * @param {{ address: string, manager: import('three').LoadingManager, budget: number, errorTarget?: number, stage: Stage, hearer: Hearer }} options
    */
-  constructor({ TilesRenderer, LRUCache, DownloadPriorityQueue, PriorityQueue }, tileset, { address, budget, errorTarget, stage, hearer }) {
+  constructor({ TilesRenderer, LRUCache, DownloadPriorityQueue, PriorityQueue }, tileset, { address, manager, budget, errorTarget, stage, hearer }) {
     const renderer = (this.#renderer = /** @type {any} */ (new TilesRenderer(address)));
     this.#tileset = tileset;
     this.#budget = budget;
@@ -109,7 +110,7 @@ export class Tiles {
     renderer.lruCache = Object.assign(new LRUCache(), { unloadPriorityCallback: lruCache.unloadPriorityCallback, minSize: 0, maxSize: Infinity, unloadPercent: 0.5 });
     renderer.downloadQueue = Object.assign(new DownloadPriorityQueue(), { priorityCallback: downloadQueue.priorityCallback, maxJobsPerOrigin: DOWNLOADS });
     renderer.parseQueue = Object.assign(new PriorityQueue(), { priorityCallback: parseQueue.priorityCallback, maxJobs: PARSED });
-    renderer.manager = loading();
+    renderer.manager = manager;
     renderer.calculateBytesUsed = (/** @type {any} */ tile) => this.#sizeOf(tile);
     // It warns of every tileset of version 1.1, and does no more.
     renderer.preprocessTileset = (/** @type {any} */ { root }, /** @type {string} */ url, parent = null) =>
