@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { decodePng, difference, meanColor, silhouette as silhouetteWithin } from '../page/pictures.mjs';
 import { ball, glb } from './files.mjs';
+import { validateTileset } from '../pkg/validate-tileset.mjs';
 import { startSite, test } from './site.mjs';
 import { height, putTileset, tileset } from './tilesets.mjs';
 
@@ -14,7 +15,8 @@ const SIZE = 100;
 const SIDE = 32;
 const hills = await tileset({ origin: ORIGIN, size: SIZE, side: SIDE });
 const points = putTileset(site, '/points', hills);
-const mesh = putTileset(site, '/mesh', await tileset({ kind: 'mesh', origin: ORIGIN, meshopt: true }));
+const field = await tileset({ kind: 'mesh', origin: ORIGIN, meshopt: true });
+const mesh = putTileset(site, '/mesh', field);
 site.put('/ball.glb', await glb([{ ...ball(16), color: [200, 10, 10] }]));
 
 /** In the page, before all else: counts draw calls, and keeps the most of one picture of the viewer that is watched. */
@@ -103,6 +105,22 @@ test('points: whole at first, finer where one comes near, exact where one points
   t.diagnostic(JSON.stringify(most));
   assert.ok(most.calls <= 200 && most.bytes <= whole.budget, JSON.stringify(most));
   assert.deepEqual(faults, []);
+});
+
+test('the tilesets of these tests are valid, and what is not is told', async () => {
+  const facts = await validateTileset(hills);
+  assert.deepEqual([facts.tiles, facts.depth, facts.leafPoints, facts.triangles], [21, 2, (4 * SIDE) ** 2, 0]);
+  assert.ok([0, 1].every((axis) => facts.box[0][axis] > ORIGIN[axis] && facts.box[1][axis] < ORIGIN[axis] + SIZE));
+  assert.equal((await validateTileset(field)).leafTriangles, 2 * (4 * SIDE) ** 2);
+  const broken = new Map(hills);
+  const json = JSON.parse(String(hills.get('tileset.json')));
+  json.root.children[0].geometricError = 100;
+  json.root.children[1].boundingVolume.box[0] += 30;
+  broken.set('tileset.json', Buffer.from(JSON.stringify(json))).delete('points/2-0-0-0.glb');
+  await assert.rejects(validateTileset(broken), ({ message, actual }) => {
+    for (const words of [/root\/0: its error is larger/, /root\/1: its box is not inside/, /outside of the tile's box/, /2-0-0-0.glb is not there/]) assert.match(actual.join(), words);
+    return /things are wrong/.test(message);
+  });
 });
 
 test('a mesh: colours, no cracks, picked exactly; light and dark', async () => {

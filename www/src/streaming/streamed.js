@@ -25,6 +25,9 @@ import { say } from '../words/say.js';
 /** What of the picture's keys has a meaning here. */
 const KEYS = new Set(['f', 'Double click', 'u', 'v', 'r', 't', 'p', '+', '-', 'Arrows', 'Home']);
 
+/** Numbers that are shown when they are 0, too. */
+const ALWAYS = new Set(['tiles', 'loading', 'bytes']);
+
 /** Whether an address names a tileset. @param {string | null} src @returns {src is string} */
 export function isTileset(src) {
   return src !== null && /\.json$/i.test(src.split(/[?#]/)[0]);
@@ -82,19 +85,16 @@ export class Streamed {
     const state = viewer.streamed;
     if (!state) return;
     const { points, triangles, total, bytes, budget, tiles, loading, failed } = state;
-    const [shown, of] = [format.count(points), total && format.count(total)];
+    const [shown, of] = [format.count(points), total ? format.count(total) : ''];
     const words = triangles && !points ? say('{count} triangles shown', { count: format.count(triangles) })
       : of ? say('{shown} of {total} points shown', { shown, total: of }) : say('{shown} points shown', { shown });
     byId('caption-detail', HTMLElement).textContent = words;
-    byId('stream-words', HTMLElement).textContent = words;
-    for (const [name, value, text] of /** @type {[string, number, string][]} */ ([
-      ['points', points, shown], ['total', total ?? NaN, of ?? '–'], ['triangles', triangles, format.count(triangles)], ['tiles', tiles, format.count(tiles)],
-      ['loading', loading, format.count(loading)], ['failed', failed, format.count(failed)],
-      ['bytes', bytes, say('{held} of {budget}', { held: format.bytes(bytes), budget: format.bytes(budget) })],
-    ])) {
+    const held = say('{held} of {budget}', { held: format.bytes(bytes), budget: format.bytes(budget) });
+    for (const [name, value] of Object.entries({ points, total: total ?? 0, triangles, tiles, loading, failed, bytes })) {
       const cell = /** @type {HTMLDataElement} */ (document.querySelector(`data[data-stream="${name}"]`));
-      cell.textContent = text;
+      cell.textContent = name === 'bytes' ? held : format.count(value);
       cell.value = String(value);
+      /** @type {HTMLElement} */ (cell.closest('div')).hidden = value === 0 && !ALWAYS.has(name);
     }
   }
 
