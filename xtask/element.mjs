@@ -65,6 +65,7 @@ await build({
   outfile: path(`../pkg/${SECOND}`),
   minify: true,
   format: 'cjs',
+  supported: { 'dynamic-import': false }, // what it imports later, it is handed, too
   banner: { js: '/*! with 3d-tiles-renderer, Copyright California Institute of Technology, Apache-2.0 */\nexport default(require)=>{const module={};' },
   footer: { js: 'return module.exports};' },
 });

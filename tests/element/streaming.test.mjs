@@ -52,6 +52,7 @@ async function open({ imports, style = '', ...more } = {}) {
   const act = (job, argument) => shown.page.evaluate(job, argument);
   /** Until nothing more comes. */
   const settled = async () => {
+    await act(() => (window.quiet = 0));
     await shown.page.waitForFunction(() => {
       const { loading, tiles } = viewer.streamed ?? {};
       window.quiet = loading === 0 && tiles > 0 ? (window.quiet ?? 0) + 1 : 0;
