@@ -12,6 +12,8 @@ import { studioMatcap } from './matcap.js';
 
 /** So many points say how far apart all are. */
 const SAMPLE = 32_768;
+/** Points of a tile are at most so many times as far apart, or as close, as is said of its level. */
+const LOOSE = 1.5;
 /** Pixels have four bytes, and smaller pictures of a picture a third of that again. */
 const PIXEL = 4 * (4 / 3);
 
@@ -41,13 +43,19 @@ export function objectsOf(scene) {
   return found;
 }
 
-/** Gives a tile's objects their materials. @param {Object3D} scene in the tileset's frame @param {number} diagonal of the tileset */
-export function dress(scene, diagonal) {
+/**
+ * Gives a tile's objects their materials.
+ * @param {Object3D} scene in the tileset's frame
+ * @param {number} diagonal of the tileset
+ * @param {number | undefined} said how far apart points are on average, where the tileset says so: sparse tiles are then not of huge points
+ */
+export function dress(scene, diagonal, said) {
   scene.updateMatrixWorld(true);
   for (const object of objectsOf(scene)) {
     if (object instanceof Points) {
-      const spacing = (spacingOf(object.geometry) * object.matrixWorld.getMaxScaleOnAxis()) / diagonal;
-      dressPoints(object, (normals) => cover(spacing, normals));
+      const found = spacingOf(object.geometry) * object.matrixWorld.getMaxScaleOnAxis();
+      const spacing = said ? Math.min(LOOSE * said, Math.max(said / LOOSE, found)) : found;
+      dressPoints(object, (normals) => cover(spacing / diagonal, normals));
     } else dressMesh(object, object.userData.bare === true);
   }
   fadable(scene);

@@ -167,7 +167,7 @@ export class Tiles {
         else triangles += (geometry.index ?? vertices).count / 3;
       }
     }
-    const { points: total = null } = this.#tileset.asset.extras?.pointweave ?? {};
+    const { points: all = null, reduced: total = all } = this.#tileset.asset.extras?.pointweave ?? {};
     const loading = stats.queued + stats.downloading + stats.parsing;
     return {
       points, triangles, total, bytes: this.#held, budget: this.#budget, tiles: this.#renderer.visibleTiles.size, held: lruCache.loadedSet.size,
@@ -253,7 +253,8 @@ export class Tiles {
 
   /** A tile was read. @param {import('three').Object3D} scene @param {any} tile */
   #receive(scene, tile) {
-    dress(scene, this.frame.diagonal);
+    const { spacing } = this.#tileset.asset.extras?.pointweave ?? {};
+    dress(scene, this.frame.diagonal, spacing && (tile.geometricError || spacing));
     const bytes = bytesOf(scene);
     if (bytes > this.#largest) {
       this.#largest = bytes;

@@ -5,8 +5,8 @@ import { fetchBytes } from './fetching.js';
 /**
  * A tile, as far as it is looked at here.
  * @typedef {{ boundingVolume?: object, geometricError?: number, children?: Tile[] }} Tile
- * What `pointweave tiles` says of its own: points of the finest level, and how far apart they are.
- * @typedef {{ points?: number, spacing?: number }} Own
+ * What `pointweave tiles` says of its own: points of the scan and of the finest level, and how far apart these are.
+ * @typedef {{ points?: number, reduced?: number, spacing?: number }} Own
  * @typedef {{ asset: { version: string, extras?: { pointweave?: Own } }, geometricError: number, root: Tile, extensionsRequired?: string[] }} Tileset
  */
 
