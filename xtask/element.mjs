@@ -9,7 +9,7 @@ import { build } from 'esbuild';
 const path = (name) => fileURLToPath(new URL(name, import.meta.url));
 
 /** Modules that are in the second file alone. */
-const STREAMS = /[\\/]viewer[\\/](tiles|tile-content|tileset|fade)\.js$/;
+const STREAMS = /[\\/]viewer[\\/](tiles|tile-content|tileset|fade|skirts)\.js$/;
 const SECOND = './element-tiles.min.js';
 
 const OPTIONS = {

@@ -1,12 +1,13 @@
 /** What a tile holds, as the viewer draws it: points and bare meshes in its own materials, all else as its file says. */
 import { LoadingManager, Mesh, Points, Texture, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { typicalSpacing } from './density.js';
 import { fadable } from './fade.js';
 import { frameOf, toFrame } from './frame.js';
 import { bareIn, dressMesh, dressPoints } from './glb.js';
 import { cover } from './layers.js';
-import { typicalSpacing } from './density.js';
 import { studioMatcap } from './matcap.js';
+import { addSkirts } from './skirts.js';
 
 /** @import { BufferAttribute, Object3D } from 'three' */
 
@@ -14,6 +15,8 @@ import { studioMatcap } from './matcap.js';
 const SAMPLE = 32_768;
 /** Points of a tile are at most so many times as far apart, or as close, as is said of its level. */
 const LOOSE = 1.5;
+/** How far down a mesh's border goes, in distances between its points. */
+const SKIRT = 1;
 /** Pixels have four bytes, and smaller pictures of a picture a third of that again. */
 const PIXEL = 4 * (4 / 3);
 
@@ -47,7 +50,8 @@ export function objectsOf(scene) {
  * Gives a tile's objects their materials.
  * @param {Object3D} scene in the tileset's frame
  * @param {number} diagonal of the tileset
- * @param {number | undefined} said how far apart points are on average, where the tileset says so: sparse tiles are then not of huge points
+ * @param {number | undefined} said how far apart points are on average, where the tileset says so: sparse tiles are then not of huge
+ *   points, and meshes go down at their borders
  */
 export function dress(scene, diagonal, said) {
   scene.updateMatrixWorld(true);
@@ -56,7 +60,10 @@ export function dress(scene, diagonal, said) {
       const found = spacingOf(object.geometry) * object.matrixWorld.getMaxScaleOnAxis();
       const spacing = said ? Math.min(LOOSE * said, Math.max(said / LOOSE, found)) : found;
       dressPoints(object, (normals) => cover(spacing / diagonal, normals));
-    } else dressMesh(object, object.userData.bare === true);
+      continue;
+    }
+    dressMesh(object, object.userData.bare === true);
+    if (said && object.geometry.index) addSkirts(object.geometry, (SKIRT * said) / object.matrixWorld.getMaxScaleOnAxis());
   }
   fadable(scene);
 }

@@ -206,7 +206,7 @@ export class Tiles {
       this.#choose();
     }
     const { refused } = renderer.stats;
-    if (refused && this.#used > 0.75 * this.#room) this.#strain *= STEP;
+    if (refused && this.#largest && this.#used > 0.75 * this.#room) this.#strain *= STEP;
     this.#fades.step();
     if (refused || this.#fades.running) this.#hearer.changed();
     this.#tell();
@@ -248,7 +248,7 @@ export class Tiles {
   /** Of a tile; while it is under way, of the largest so far. @param {any} tile */
   #sizeOf(tile) {
     if (tile.internal.hasUnrenderableContent) return 0;
-    return this.#sizes.get(tile) ?? (this.#largest || this.#budget / 32);
+    return this.#sizes.get(tile) ?? (this.#largest || this.#budget / 64);
   }
 
   /** A tile was read. @param {import('three').Object3D} scene @param {any} tile */
@@ -259,6 +259,7 @@ export class Tiles {
     if (bytes > this.#largest) {
       this.#largest = bytes;
       this.#makeRoom();
+      for (const other of this.#renderer.loadingTiles) this.#renderer.lruCache.setMemoryUsage(other, bytes);
     }
     if (this.#held + bytes > this.#budget) {
       this.#strain *= STEP;
