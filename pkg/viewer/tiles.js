@@ -132,7 +132,10 @@ export class Tiles {
   /** Has the root's box found. */
   async #begin() {
     const renderer = this.#renderer;
-    const there = new Promise((resolve) => renderer.addEventListener('load-root-tileset', resolve));
+    const there = new Promise((resolve, reject) => {
+      renderer.addEventListener('load-root-tileset', resolve);
+      renderer.addEventListener('load-error', (/** @type {any} */ { tile, error }) => tile ?? reject(error));
+    });
     renderer.update();
     await there;
     const box = new Box3();
@@ -261,6 +264,7 @@ export class Tiles {
       this.#makeRoom();
       for (const other of this.#renderer.loadingTiles) this.#renderer.lruCache.setMemoryUsage(other, bytes);
     }
+    if (bytes > this.#budget) throw new Error(`a tile has ${bytes} bytes, and the budget is ${this.#budget}`);
     if (this.#held + bytes > this.#budget) {
       this.#strain *= STEP;
       throw new DOMException('there is no room', 'AbortError'); // it is fetched again should it still be wanted
@@ -285,8 +289,9 @@ export class Tiles {
 
   /** A tile does not load: the one that it is a part of stays as it is. @param {any} tile @param {unknown} error */
   #miss(tile, error) {
-    if (tile) this.#renderer.lruCache.setMemoryUsage(tile, 0);
-    if (tile?.parent) tile.parent.geometricError = 0;
+    if (!tile) return;
+    this.#renderer.lruCache.setMemoryUsage(tile, 0);
+    if (tile.parent) tile.parent.geometricError = 0;
     const { stats } = this.#renderer;
     if (this.kind || stats.queued + stats.downloading + stats.parsing > 0) return this.#hearer.changed();
     const why = error instanceof Error ? error.message : String(error);

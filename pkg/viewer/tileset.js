@@ -10,6 +10,8 @@ import { fetchBytes } from './fetching.js';
  * @typedef {{ asset: { version: string, extras?: { pointweave?: Own } }, geometricError: number, root: Tile, extensionsRequired?: string[] }} Tileset
  */
 
+/** What says where a tile is. */
+const VOLUMES = ['box', 'sphere', 'region'];
 /** What tilesets may require that is understood, or that their GLBs say again. */
 const KNOWN = /^(3DTILES_content_gltf|3DTILES_metadata|(KHR|EXT)_.+)$/;
 
@@ -30,7 +32,8 @@ export async function fetchTileset(url, watch) {
   const { asset, root, extensionsRequired = [] } = tileset ?? {};
   if (typeof asset?.version !== 'string') throw bad('it has no asset.version, as tilesets have');
   if (!['0.0', '1.0', '1.1'].includes(asset.version)) throw unsupported(`its version is ${asset.version}: expected 1.0 or 1.1`, asset.version);
-  if (!root?.boundingVolume) throw bad('it has no root with a boundingVolume');
+  const isPlaced = VOLUMES.some((name) => root?.boundingVolume?.[name]?.every?.(Number.isFinite));
+  if (!isPlaced) throw bad('it has no root with a boundingVolume');
   const other = extensionsRequired.find((/** @type {string} */ name) => !KNOWN.test(name));
   if (other) throw unsupported(`it needs ${other}, which is not supported`, other);
   if (root.implicitTiling) throw unsupported('its tiles are not named (implicit tiling)', 'implicitTiling');

@@ -213,11 +213,14 @@ test('what is no tileset, does not come, or needs what is not there says so', as
   site.put('/rootless.json', Buffer.from('{"asset":{"version":"1.1"}}'));
   site.put('/implicit.json', Buffer.from('{"asset":{"version":"1.1"},"root":{"boundingVolume":{"sphere":[0,0,0,1]},"implicitTiling":{}}}'));
   site.put('/empty.json', Buffer.from('{"asset":{"version":"1.1"},"root":{"boundingVolume":{"sphere":[0,0,0,1]},"geometricError":1,"content":{"uri":"none.glb"}}}'));
+  site.put('/placeless.json', Buffer.from('{"asset":{"version":"1.1"},"root":{"boundingVolume":{"box":["a"]}}}'));
+  putTileset(site, '/broad', new Map([['large.glb', await glb([{ positions: new Float32Array(300_000) }])]]));
+  site.put('/broad.json', Buffer.from('{"asset":{"version":"1.1"},"root":{"boundingVolume":{"sphere":[0,0,0,1]},"geometricError":1,"content":{"uri":"broad/large.glb"}}}'));
   for (const [url, code, words] of [
     ['/nowhere.json', 'load-failed', /404/], ['/no.json', 'bad-file', /no tileset.*JSON/], ['/other.json', 'unsupported-file', /version is 2.0/],
-    ['/rootless.json', 'bad-file', /root/], ['/implicit.json', 'unsupported-file', /implicit/], ['/empty.json', 'load-failed', /no tile did load/],
+    ['/rootless.json', 'bad-file', /root/], ['/placeless.json', 'bad-file', /boundingVolume/], ['/broad.json', 'load-failed', /budget/], ['/implicit.json', 'unsupported-file', /implicit/], ['/empty.json', 'load-failed', /no tile did load/],
   ]) {
-    const error = await streamed(act, url);
+    const error = await streamed(act, url, { budget: 2 ** 20 });
     assert.equal(error?.code, code, url);
     assert.match(error.message, words);
   }
