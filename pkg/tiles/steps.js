@@ -61,6 +61,7 @@ export async function count(folder, index, path, read) {
  * @returns {Promise<Plan>}
  */
 export async function plan(folder, inputs, options) {
+  /** @type {(Plan['inputs'][number] & { told: import('./scan.js').Told, counts: string })[]} */
   const counted = [];
   for (let i = 0; i < inputs; i++) counted.push(await folder.json(countsPath(i)));
   const counts = counted.map(({ counts: text }) => new Uint8Array(Buffer.from(text, 'base64')));
