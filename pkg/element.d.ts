@@ -1,10 +1,10 @@
 /**
  * `<point-weave>`: importing this defines the element. It needs three.js (an optional peer of the package).
  */
-import type { Axis, Pose } from './viewer.js';
+import type { Axis, Pose, StreamState } from './viewer.js';
 import type { Doubt, EngineOptions, ErrorCode, Orientation, PointweaveError, ReduceReport, Stage as EngineStage, SurfaceReport } from './types.js';
 
-export type { Axis, Pose } from './viewer.js';
+export type { Axis, Pose, StreamState } from './viewer.js';
 
 export type View = 'points' | 'reduced' | 'mesh';
 export type Loading = 'lazy' | 'eager';
@@ -21,13 +21,13 @@ export interface ProgressDetail {
 
 export interface LoadDetail {
   src: string;
-  /** A GLB is shown as it is, a scan is computed. */
-  kind: 'glb' | 'scan';
-  /** The view that is shown: the one asked for, or of a GLB what it holds. */
+  /** A GLB is shown as it is, a tileset streams, a scan is computed. */
+  kind: 'glb' | 'tiles' | 'scan';
+  /** The view that is shown: the one asked for, or of a GLB or a tileset what it holds. */
   view: View;
   points: number;
   triangles: number;
-  /** Of the reduced cloud or the mesh; null for points and for a GLB. */
+  /** Of the reduced cloud or the mesh; null for points, a GLB and a tileset. */
   report: ReduceReport | SurfaceReport | null;
 }
 
@@ -52,6 +52,8 @@ export interface PointWeaveEventMap {
   error: CustomEvent<ErrorDetail>;
   /** The job under way was stopped; nothing of it will be shown. */
   abort: CustomEvent<AbortDetail>;
+  /** Of a tileset, other tiles are shown or held; once a frame. */
+  stream: CustomEvent<StreamState>;
   /** The camera has moved; once a frame. */
   'camera-change': CustomEvent<CameraChangeDetail>;
   /** It could not be shown in the room: there is no Scene Viewer, or no file for Quick Look could be made. */
@@ -108,7 +110,7 @@ export class PointWeaveElement extends HTMLElement {
   /** As that of `createEngine`, where the worker's script is elsewhere. */
   static workerUrl: EngineOptions['workerUrl'];
 
-  /** A GLB, or a scan of a format that `read` takes. */
+  /** A GLB, a tileset (`tileset.json` of 3D Tiles), or a scan of a format that `read` takes. */
   src: string;
   /** What it shows, in words. `alt=""` says that it is decoration, where there are no `controls`. */
   alt: string;

@@ -173,7 +173,48 @@ export interface Paint {
   legend: Scale | Kinds | null;
 }
 
+/** How a tileset is streamed. */
+export interface StreamOptions {
+  /**
+   * Bytes of points, triangles and pictures that are held at most, at least 1 MiB. Default 268,435,456 (256 MiB). Where what is seen would
+   * need more, it is coarser.
+   */
+  budget?: number;
+  /**
+   * The error that tiles may have on the screen, in CSS pixels, above 0: less shows more. The default is 2 for points and 6 for meshes of
+   * `pointweave tiles`, whose error is the distance between points; 16 for other tilesets, as they are mostly made for.
+   */
+  errorTarget?: number;
+  signal?: AbortSignal;
+  /** Share of the way to the first picture, 0 to 1. */
+  onProgress?: (share: number) => void;
+}
+
+/** What is shown and held of a tileset. */
+export interface StreamState {
+  /** In the picture. */
+  points: number;
+  triangles: number;
+  /** Tiles in the picture. */
+  tiles: number;
+  /** Points of the finest level, where the tileset says so. */
+  total: number | null;
+  /** Of points, triangles and pictures in memory; the graphics card holds those again that were in a picture. */
+  bytes: number;
+  budget: number;
+  /** Tiles in memory. */
+  held: number;
+  /** Tiles under way. */
+  loading: number;
+  /** Tiles that did not load, after three tries; what they are parts of is shown instead. */
+  failed: number;
+  /** The error on the screen now, in CSS pixels: larger than was asked for where there is no room. */
+  error: number;
+}
+
 export interface ViewerEventMap {
+  /** What streams is shown with other tiles, or something came or went; once a picture. `streamed` says what. */
+  stream: Event;
   /** The picture was drawn. */
   draw: Event;
   /** The camera has moved; once a frame. */
@@ -193,6 +234,17 @@ export interface Viewer extends EventTarget {
    * @param options frame: what to fit, where it is known; default is the box of what is shown
    */
   show(what: Drawable | Model, options?: { frame?: Frame }): void;
+  /**
+   * Streams a tileset (OGC 3D Tiles 1.0 or 1.1) instead of what is shown: tiles come and go with the camera, as the layer `'points'` or
+   * `'mesh'`, with at most 200 draw calls a picture. Coordinates are those of the tileset, exact in double precision, and z is up unless
+   * `up` says otherwise. Resolves when there is something to see, which is asked for at once. It needs 3d-tiles-renderer (an optional peer
+   * of the package). Indices that `pick` and `pickPoint` give are of what is shown now. `paint`, `showEdges` and `shadow` leave it alone.
+   * Rejects with `missing-package`, `load-failed`, `bad-file`, `unsupported-file` or `bad-input`, and as an abort where something else is
+   * shown meanwhile.
+   */
+  stream(url: string, options?: StreamOptions): Promise<void>;
+  /** What is shown and held of a tileset; null where none is streamed. */
+  readonly streamed: StreamState | null;
   /** Adds or replaces a layer, of at most 31; null removes it. What would be cut off is fitted in, unless somebody has looked around. */
   set(layer: string, what: Drawable | null): void;
   has(layer: string): boolean;

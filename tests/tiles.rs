@@ -65,14 +65,14 @@ fn planned(points: &[[f64; 3]], most: u64) -> Plan {
 fn measured(plan: &Plan, leaves: &BTreeMap<Tile, Points>, aim: Aim) -> Measures {
     let samples: Vec<Sample> = leaves
         .iter()
-        .map(|(&tile, points)| {
-            let (indices, range) = measures::sample(tile, &points.places);
-            let places = points.select(&indices).places;
-            Sample {
-                places,
+        .flat_map(|(&tile, points)| {
+            let groups = measures::samples(tile, &points.places, 4);
+            let each = points.places.len() as f64 / groups.len() as f64;
+            groups.into_iter().map(move |(indices, range)| Sample {
+                places: points.select(&indices).places,
                 range,
-                points: points.places.len() as f64,
-            }
+                points: each,
+            })
         })
         .collect();
     measure(&samples, plan.grid, (aim, 0.5), &mut Silent).unwrap()

@@ -68,7 +68,7 @@ export default defineConfig({
   build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
   // The package is a neighbour of this folder, outside Vite's root.
   // It has no packages of its own: these are the page's.
-  resolve: { dedupe: ['three', '@gltf-transform/core', '@gltf-transform/extensions', 'meshoptimizer'] },
+  resolve: { dedupe: ['three', '3d-tiles-renderer', '@gltf-transform/core', '@gltf-transform/extensions', 'meshoptimizer'] },
   server: { headers: isolation, fs: { allow: ['..'] } },
   preview: { headers: isolation },
 });

@@ -8,7 +8,7 @@ import { MANIFEST, PLAN, STAGES, TILESET, countsPath } from '../tiles/plan.js';
 import { runStep } from '../tiles/run-step.js';
 import { Workers, runAll } from '../tiles/schedule.js';
 import { plan, planOf } from '../tiles/steps.js';
-import { makeFolder } from './files.js';
+import { makeFolder, sentence } from './files.js';
 import { say } from './say.js';
 import { UsageError } from './usage.js';
 
@@ -69,10 +69,19 @@ async function planned(workers, inputs, { options, resume, folder: path }) {
   await folder.writeJson('work/inputs.json', JSON.parse(key));
   if (await folder.has(PLAN)) return planOf(folder);
   let counted = 0;
+  let bad = 0;
   await inTurn(workers, inputs, async (input, i) => {
-    if (!(await folder.has(countsPath(i)))) await workers.run({ stage: 'count', tile: `${i}`, input, read: options.read });
-    say(`counted ${++counted} of ${inputs.length}: ${input}`);
+    try {
+      if (!(await folder.has(countsPath(i)))) await workers.run({ stage: 'count', tile: `${i}`, input, read: options.read });
+      say(`counted ${++counted} of ${inputs.length}: ${input}`);
+    } catch (error) {
+      folder.signal.throwIfAborted();
+      // The other files are counted all the same, and all bad ones are known at once.
+      bad++;
+      say(sentence(error));
+    }
   });
+  if (bad > 0) throw new Error(`${bad} of ${inputs.length} files cannot be read: nothing was made of the others yet`);
   const made = await plan(folder, inputs.length, options);
   const points = made.inputs.reduce((sum, input) => sum + input.points, 0);
   const bytes = points * (SORTED + SHOWN / 3 + 4 * made.names.length);

@@ -47,7 +47,7 @@ export class Ar {
   /** What there is to show: a GLB, or the mesh of a scan. */
   get #subject() {
     const source = this.#host[SOURCE];
-    return source?.kind === 'glb' ? source : source?.mesh;
+    return source?.kind === 'scan' ? source.mesh : source?.kind === 'glb' ? source : undefined;
   }
 
   /** How it is shown on this device; null where it cannot be. @returns {'scene-viewer' | 'quick-look' | null} */

@@ -11,7 +11,7 @@ import { VIEWS, buildParts } from './parts.js';
 import { VIEWER } from './posed.js';
 import { Prompt } from './prompt.js';
 import { InRoom, SOURCE } from './room.js';
-import { isNamedGlb, openSource, wishOf } from './source.js';
+import { isNamedGlb, openSource, showSource, wishOf } from './source.js';
 import { Speech } from './speech.js';
 import { AR, CAMERA, LIGHT } from './switching.js';
 import { themeOf } from './theme.js';
@@ -21,7 +21,7 @@ import { WORDS } from './words.js';
 /** @import { EngineOptions } from '../types.js' */
 /** @import { AbortReason, ErrorDetail, LoadDetail, PointWeaveEventMap, Stage, View, Words } from '../element.js' */
 /** @import { Viewer } from '../viewer.js' */
-/** @import { Glb, Scan } from './source.js' */
+/** @import { Glb, Scan, Tileset } from './source.js' */
 
 /** Work under way. @typedef {{ src: string, controller: AbortController, share: number, stage: Stage }} Job */
 
@@ -247,9 +247,8 @@ export class PointWeaveElement extends InRoom {
       const [viewer, source] = await Promise.all([this.#ready(), this[SOURCE] ?? openSource(src, this.view, work)]);
       signal.throwIfAborted();
       if (!this[SOURCE]) {
-        const shown = source.kind === 'glb' ? await (await import('../viewer/glb.js')).readGlb(source.bytes) : { ...source.cloud, normals: undefined };
+        await showSource(viewer, source, src, work);
         signal.throwIfAborted();
-        viewer.show(shown);
         this[SOURCE] = source;
         this.#showBest();
       }
@@ -285,6 +284,7 @@ export class PointWeaveElement extends InRoom {
       this.tellMove(by);
       if (by === 'keys') this.#speech.atRest(() => PointWeaveElement.words.pose(viewer.pose));
     });
+    viewer.addEventListener('stream', () => this.tellStream());
     if (!this.#attached) viewer.suspend();
     this[VIEWER] = viewer;
     this.pose();
@@ -295,7 +295,7 @@ export class PointWeaveElement extends InRoom {
     return viewer;
   }
 
-  /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer */
+  /** @param {string} src @param {Glb | Scan | Tileset} source @param {Viewer} viewer */
   #finish(src, source, viewer) {
     this.#panels.end();
     this.#showBest();
@@ -307,7 +307,7 @@ export class PointWeaveElement extends InRoom {
     this.#prompt.wait(() => this.controls && this.loaded && this.interactionPrompt === 'auto');
   }
 
-  /** @param {string} src @param {Glb | Scan} source @param {Viewer} viewer @returns {LoadDetail} */
+  /** @param {string} src @param {Glb | Scan | Tileset} source @param {Viewer} viewer @returns {LoadDetail} */
   #shown(src, source, viewer) {
     const view = this.#best();
     return { src, kind: source.kind, view, ...viewer.size(view), report: this.report };
@@ -405,16 +405,16 @@ export class PointWeaveElement extends InRoom {
     if (this[VIEWER]?.has(view)) this.#speech.say(PointWeaveElement.words.shown({ view, ...this[VIEWER].size(view) }));
   }
 
-  /** What can be chosen: all of a scan, for it is computed; what there is in a GLB. */
+  /** What can be chosen: all of a scan, for it is computed; else what there is. */
   get #views() {
-    return this[SOURCE]?.kind === 'glb' ? VIEWS.filter((view) => this[VIEWER]?.has(view)) : [...VIEWS];
+    return (this[SOURCE]?.kind ?? 'scan') === 'scan' ? [...VIEWS] : VIEWS.filter((view) => this[VIEWER]?.has(view));
   }
 
   /** Brings what can be handled in line with the attributes. */
   #dress = () => {
     const { controls, autoRotate } = this;
     const turns = autoRotate && !calm().wanted;
-    const view = this[SOURCE]?.kind === 'glb' ? this.#best() : this.view;
+    const view = (this[SOURCE]?.kind ?? 'scan') === 'scan' ? this.view : this.#best();
     const state = { present: Boolean(this[SOURCE]), controls, turns, paused: this.#paused, views: this.#views, view };
     this.#panels.showToolbar(state, PointWeaveElement.words);
     this.offerAr();

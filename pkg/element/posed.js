@@ -68,6 +68,11 @@ export class Posed extends Reflecting {
     this.dispatchEvent(new CustomEvent('camera-change', { detail: { source: MOVERS[by] } }));
   }
 
+  /** Of a tileset, other tiles are shown or held. */
+  tellStream() {
+    this.dispatchEvent(new CustomEvent('stream', { detail: this[VIEWER]?.streamed }));
+  }
+
   /** Brings the camera in line with the attributes. @param {string} [attribute] that has changed; default all */
   pose(attribute) {
     const viewer = this[VIEWER];

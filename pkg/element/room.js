@@ -5,7 +5,7 @@ import { Posed } from './posed.js';
 export const SOURCE = Symbol('source');
 
 export class InRoom extends Posed {
-  /** @type {import('./source.js').Glb | import('./source.js').Scan | undefined} */
+  /** @type {import('./source.js').Glb | import('./source.js').Tileset | import('./source.js').Scan | undefined} */
   [SOURCE];
   /** @type {import('./ar.js').Ar | undefined} */
   #room;

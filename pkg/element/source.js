@@ -1,9 +1,9 @@
 /**
- * What a `src` holds, and what has been made of it so far. A GLB is shown as it is; everything else is a scan, for the
- * package to read, and what a view needs of it is computed when the view is wanted.
+ * What a `src` holds, and what has been made of it so far. A GLB is shown as it is, a tileset streams; everything else is a scan, for
+ * the package to read, and what a view needs of it is computed when the view is wanted.
  */
 import { sharedEngine } from './engines.js';
-import { fetchBytes } from './fetching.js';
+import { fetchBytes } from '../viewer/fetching.js';
 import { inTurn } from './turns.js';
 
 /** @import { EngineOptions, Orientation, PointCloud, ReducedCloud, SurfaceMesh, Target } from '../types.js' */
@@ -31,6 +31,7 @@ const FETCHED = { glb: 0.9, points: 0.7, computed: 0.2 };
 const READ = { points: 1, computed: 0.3 };
 
 /** @typedef {{ kind: 'glb', bytes: Uint8Array<ArrayBuffer> }} Glb */
+/** The viewer fetches it. @typedef {{ kind: 'tiles' }} Tileset */
 
 export class Scan {
   kind = /** @type {const} */ ('scan');
@@ -91,9 +92,10 @@ export class Scan {
  * @param {string} src
  * @param {View} view what will be wanted of it
  * @param {Work} work
- * @returns {Promise<Glb | Scan>}
+ * @returns {Promise<Glb | Tileset | Scan>}
  */
 export async function openSource(src, view, { signal, onProgress, engine: options }) {
+  if (/\.json$/i.test(nameOf(src))) return { kind: 'tiles' };
   const likely = isNamedGlb(src) ? 'glb' : view === 'points' ? 'points' : 'computed';
   onProgress('fetch', 0);
   const bytes = await fetchBytes(src, { signal, onProgress: (fraction) => onProgress('fetch', FETCHED[likely] * fraction) });
@@ -101,6 +103,7 @@ export async function openSource(src, view, { signal, onProgress, engine: option
     onProgress('read', FETCHED.glb);
     return { kind: 'glb', bytes: /** @type {Uint8Array<ArrayBuffer>} */ (bytes) };
   }
+  if (bytes[0] === 0x7b) return { kind: 'tiles' }; // {: no format of scans begins so
   const kind = view === 'points' ? 'points' : 'computed';
   onProgress('read', FETCHED[kind]);
   const engine = await sharedEngine(options);
@@ -112,6 +115,20 @@ export async function openSource(src, view, { signal, onProgress, engine: option
     onProgress: ({ overall }) => onProgress('read', FETCHED[kind] + (READ[kind] - FETCHED[kind]) * overall),
   });
   return new Scan(cloud, READ[kind]);
+}
+
+/**
+ * Puts it into the viewer; of a scan its points.
+ * @param {import('../viewer.js').Viewer} viewer
+ * @param {Glb | Tileset | Scan} source
+ * @param {string} src
+ * @param {Work} work
+ */
+export async function showSource(viewer, source, src, { signal, onProgress }) {
+  if (source.kind === 'tiles') return viewer.stream(src, { signal, onProgress: (share) => onProgress('fetch', share) });
+  const shown = source.kind === 'glb' ? await (await import('../viewer/glb.js')).readGlb(source.bytes) : { ...source.cloud, normals: undefined };
+  signal.throwIfAborted();
+  viewer.show(shown);
 }
 
 /** What is named so is likely to be one. @param {string} src */

@@ -43,6 +43,7 @@ export const WORDS = {
     'non-finite': 'A point of this scan is nowhere',
     degenerate: 'These points span no surface',
     'out-of-memory': 'There is not enough memory for this scan',
+    'missing-package': 'A part that this needs is not there',
     'no-webgl': '3D pictures need WebGL 2',
     other: 'Something went wrong',
   },

@@ -23,8 +23,8 @@ import { track } from './progress.js';
  */
 
 /**
- * The engine's builds, and those that hold readers of files, decoders of pictures, writers, recipes, what makes meshes light, the steps of tiles, or samples alone.
- * @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports' | 'prepare' | 'light' | 'tiles' | 'samples'} WasmBuild
+ * The engine's builds, and those that hold readers of files, decoders of pictures, writers, recipes, what makes meshes light, or samples alone.
+ * @typedef {Build | 'files' | 'las' | 'e57' | 'packed' | 'pictures' | 'exports' | 'prepare' | 'light' | 'samples'} WasmBuild
  */
 
 /**

@@ -11,12 +11,13 @@ import { PointweaveError } from '../engine/errors.js';
  * @property {Uint8Array} [colors] three a point
  * @property {string[]} names of the scalars
  * @property {Float32Array[]} values
+ * @property {any} [more] what else belongs to these points, as JSON takes it
  */
 
 /** @param {Columns} columns */
-export function encode({ places, colors, names, values }) {
+export function encode({ places, colors, names, values, more }) {
   const points = places.length / 3;
-  const head = new TextEncoder().encode(JSON.stringify({ points, colors: colors !== undefined, names }));
+  const head = new TextEncoder().encode(JSON.stringify({ points, colors: colors !== undefined, names, more }));
   const parts = [new Uint8Array(Uint32Array.of(head.length).buffer), head, places, ...(colors ? [colors] : []), ...values];
   const bytes = new Uint8Array(parts.reduce((sum, part) => sum + padded(part.byteLength), 0));
   let at = 0;
@@ -45,12 +46,13 @@ export function decode(bytes) {
   const { buffer } = bytes;
   while (at < bytes.length) {
     const [length] = new Uint32Array(buffer, take(4), 1);
-    const { points, colors, names } = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, take(length), length)));
+    const { points, colors, names, more } = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, take(length), length)));
     blocks.push({
       places: new Uint32Array(buffer, take(12 * points), 3 * points),
       ...(colors && { colors: new Uint8Array(buffer, take(3 * points), 3 * points) }),
       names,
       values: names.map(() => new Float32Array(buffer, take(4 * points), points)),
+      more,
     });
   }
   return blocks;

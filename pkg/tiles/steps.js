@@ -17,6 +17,8 @@ import { tilesetOf } from './tileset.js';
 const VERSION = 1;
 /** Scalars that are kept if a file has them. */
 const COMMON = ['intensity', 'classification'];
+/** Groups of points that are measured, at least. */
+const SAMPLES = 128;
 /** Bytes of sorted points that are kept before they are written. */
 const BUFFER = 64 << 20;
 
@@ -59,6 +61,7 @@ export async function count(folder, index, path, read) {
  * @returns {Promise<Plan>}
  */
 export async function plan(folder, inputs, options) {
+  /** @type {(Plan['inputs'][number] & { told: import('./scan.js').Told, counts: string })[]} */
   const counted = [];
   for (let i = 0; i < inputs; i++) counted.push(await folder.json(countsPath(i)));
   const counts = counted.map(({ counts: text }) => new Uint8Array(Buffer.from(text, 'base64')));
@@ -134,18 +137,23 @@ export async function sort(folder, index, path) {
 }
 
 /**
- * Takes a sample of a leaf.
+ * Takes samples of a leaf.
  * @param {Folder} folder
  * @param {string} tile
  */
 export async function measure(folder, tile) {
-  const { octree } = await planOf(folder);
+  const { octree, tasks } = await planOf(folder);
   const { files } = found(octree.leaves, tile);
   const { places } = joined(await blocksOf(folder, files.map(([input]) => sortedPath(input, tile))), []);
-  const { indices, range } = await withModule('tiles', folder.signal, (ask) => ask({ call: 'sampleTile', args: [tile, places] }));
-  const head = new TextEncoder().encode(`${JSON.stringify({ range, points: places.length / 3 })}\n`);
-  const { places: some } = selected({ places, names: [], values: [] }, indices);
-  await folder.write(samplePath(tile), Buffer.concat([head, Buffer.alloc((4 - (head.length % 4)) % 4, ' '), Buffer.from(some.buffer)]));
+  const count = Math.ceil(SAMPLES / tasks.filter(({ stage }) => stage === 'measure').length);
+  /** @type {{ indices: Uint32Array, range: number[] }[]} */
+  const samples = await withModule('tiles', folder.signal, (ask) => ask({ call: 'sampleTile', args: [tile, places, count] }));
+  const blocks = samples.map(({ indices, range }) => {
+    const { places: some } = selected({ places, names: [], values: [] }, indices);
+    const points = places.length / 3 / samples.length;
+    return encode({ places: some, names: [], values: [], more: { range, points } });
+  });
+  await folder.write(samplePath(tile), Buffer.concat(blocks));
 }
 
 /**
@@ -154,14 +162,8 @@ export async function measure(folder, tile) {
  */
 export async function density(folder) {
   const { octree, options, tasks, inputs } = await planOf(folder);
-  const samples = [];
-  for (const { tile } of tasks.filter(({ stage }) => stage === 'measure')) {
-    const bytes = await folder.read(samplePath(/** @type {string} */ (tile)));
-    const end = bytes.indexOf(10) + 1;
-    const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
-    const start = Math.ceil(end / 4) * 4;
-    samples.push({ ...head, places: new Uint32Array(bytes.buffer, start, (bytes.length - start) / 4) });
-  }
+  const blocks = await blocksOf(folder, tasks.filter(({ stage }) => stage === 'measure').map(({ tile = '' }) => samplePath(tile)));
+  const samples = blocks.map(({ places, more }) => ({ places, range: more.range, points: more.points }));
   const measured = samples.reduce((sum, { points }) => sum + points, 0);
   const all = inputs.reduce((sum, { points }) => sum + points, 0) - octree.strays;
   // The leaves that are measured stand for all.

@@ -10,7 +10,7 @@ import { glbPath, parentOf } from './plan.js';
  * @param {Facts[]} facts parents before children
  * @param {{ target: number }} measures
  */
-export function tilesetOf({ made, octree: { corner }, unit, inputs }, facts, { target }) {
+export function tilesetOf({ made, octree: { corner, size }, unit, inputs }, facts, { target }) {
   const spacing = (/** @type {number} */ level) => target * 2 ** level;
   const points = inputs.reduce((sum, input) => sum + input.points, 0);
   const deepest = Math.max(...facts.map(({ level }) => level));
@@ -39,7 +39,7 @@ export function tilesetOf({ made, octree: { corner }, unit, inputs }, facts, { t
   }
   const shown = facts.filter(({ level }) => level === 0).reduce((sum, fact) => sum + fact.points, 0);
   return {
-    asset: { version: '1.1', extras: { pointweave: { made, points, reduced: shown, spacing: target, origin: corner, ...(unit && { unit }) } } },
+    asset: { version: '1.1', extras: { pointweave: { made, points, reduced: shown, spacing: target, origin: corner, size, ...(unit && { unit }) } } },
     geometricError: spacing(deepest + 1),
     root,
   };

@@ -38,11 +38,19 @@ export async function readGlb(bytes) {
   const gltf = await loader.parseAsync(bufferOf(bytes), '').catch((error) => {
     throw badFile(error instanceof Error ? error.message : String(error));
   });
-  const { associations, json } = gltf.parser;
-  return dressed(gltf.scene, (mesh) => {
+  return dressed(gltf.scene, bareIn(gltf));
+}
+
+/**
+ * Says which meshes of a file have no material.
+ * @param {import('three/addons/loaders/GLTFLoader.js').GLTF} gltf
+ * @returns {(mesh: import('three').Object3D) => boolean}
+ */
+export function bareIn({ parser: { associations, json } }) {
+  return (mesh) => {
     const { meshes = -1, primitives = 0 } = associations.get(mesh) ?? {};
     return json.meshes?.[meshes]?.primitives[primitives]?.material === undefined;
-  });
+  };
 }
 
 /**
@@ -81,7 +89,7 @@ function dressed(scene, isBare) {
   /** @type {Mesh[]} */
   const mesh = [];
   scene.traverse((object) => {
-    if (object instanceof Points) points.push(dressPoints(object));
+    if (object instanceof Points) points.push(dressPoints(object, (normals) => diameter(placedPositions(object), normals)));
     else if (object instanceof Mesh) mesh.push(dressMesh(object, isBare(object)));
   });
   const objects = [...points, ...mesh];
@@ -94,12 +102,12 @@ function dressed(scene, isBare) {
   };
 }
 
-/** @param {Points} points */
-function dressPoints(points) {
+/** @param {Points} points @param {(normals: 'unoriented' | 'none') => number} diameter of its points in the frame */
+export function dressPoints(points, diameter) {
   const { geometry } = points;
   const normals = geometry.hasAttribute('normal') ? 'unoriented' : 'none';
   const colored = geometry.hasAttribute('color');
-  points.material = pointMaterial({ colored, linear: true, normals, diameter: diameter(placedPositions(points), normals) });
+  points.material = pointMaterial({ colored, linear: true, normals, diameter: diameter(normals) });
   return points;
 }
 
@@ -109,7 +117,7 @@ function dressPoints(points) {
  * @param {Mesh} mesh
  * @param {boolean} bare
  */
-function dressMesh(mesh, bare) {
+export function dressMesh(mesh, bare) {
   if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
   const own = /** @type {import('three').MeshStandardMaterial} */ (mesh.material);
   if (own.type === 'MeshBasicMaterial') own.toneMapped = false; // unlit: its colours hold their own light
@@ -121,14 +129,19 @@ function dressMesh(mesh, bare) {
   return mesh;
 }
 
-/** Where an object's vertices are in the frame, at most so many of them. @param {Mesh | Points} object @param {number} [most] */
-function placedPositions(object, most = Infinity) {
+/**
+ * Where an object's vertices are in the frame, at most so many of them.
+ * @param {Mesh | Points} object
+ * @param {number} [most]
+ * @param {import('three').Matrix4} [matrix] from the object to the frame
+ */
+export function placedPositions(object, most = Infinity, matrix = object.matrixWorld) {
   const position = /** @type {BufferGeometry} */ (object.geometry).getAttribute('position');
   const step = Math.max(1, Math.ceil(position.count / most));
   const out = new Float32Array(3 * Math.ceil(position.count / step));
   const point = new Vector3();
   for (let i = 0; i < position.count; i += step) {
-    point.fromBufferAttribute(/** @type {import('three').BufferAttribute} */ (position), i).applyMatrix4(object.matrixWorld);
+    point.fromBufferAttribute(/** @type {import('three').BufferAttribute} */ (position), i).applyMatrix4(matrix);
     point.toArray(out, (3 * i) / step);
   }
   return out;

@@ -88,7 +88,7 @@ export class Ground {
    */
   ready(renderer, scene, stage) {
     if (!this.#stale || this.#strength <= 0) return;
-    const meshes = [...stage.layers.values()].filter(({ points }) => !points);
+    const meshes = [...stage.layers.values()].filter(({ points, streamed }) => !points && !streamed);
     if (meshes.length === 0) return;
     this.#stale = false;
     const box = new Box3();

@@ -52,7 +52,12 @@ function colored(layer, { colors }) {
 
 /** How large points are drawn. @param {Float32Array} positions in the frame @param {Normals} normals */
 export function diameter(positions, normals) {
-  return Math.min(LARGEST, typicalSpacing(positions) * COVER[normals]);
+  return cover(typicalSpacing(positions), normals);
+}
+
+/** How large points are drawn that are so far apart. @param {number} spacing in the frame @param {Normals} normals */
+export function cover(spacing, normals) {
+  return Math.min(LARGEST, spacing * COVER[normals]);
 }
 
 /**

@@ -46,13 +46,13 @@ export function lookOf({ azimuth, polar, distance = { share: 1 }, target = [null
 /** @type {[null, null]} */
 const NONE = [null, null];
 
-/** @param {Limits} limits @param {Frame | null} frame */
-export function boundsOf({ azimuth = NONE, polar = NONE, distance = NONE, fieldOfView = NONE }, frame) {
+/** @param {Limits} limits @param {Frame | null} frame @param {number} [nearest] in the frame, where nobody says */
+export function boundsOf({ azimuth = NONE, polar = NONE, distance = NONE, fieldOfView = NONE }, frame, nearest = NEAREST) {
   const diagonal = frame?.diagonal ?? 1;
   return {
     theta: bounds(azimuth.map(radians), -Infinity, Infinity),
     phi: bounds(polar.map(radians), POLE, Math.PI - POLE),
-    near: distance[0] ? reachOf(distance[0], diagonal) : { length: NEAREST },
+    near: distance[0] ? reachOf(distance[0], diagonal) : { length: nearest },
     far: distance[1] ? reachOf(distance[1], diagonal) : { share: FARTHEST },
     fov: bounds(fieldOfView, 1, 170),
   };

@@ -1,7 +1,7 @@
 /** What of a viewer moves: its camera, by hand, by calls and by itself. */
 import { MathUtils, PerspectiveCamera } from 'three';
 import { ITSELF } from './frame.js';
-import { FIELD_OF_VIEW } from './look.js';
+import { FIELD_OF_VIEW, NEAREST } from './look.js';
 import { Orbit } from './orbit.js';
 
 /** @import { FirstLook, Frame, Limits, Mover, Side, Stance } from '../viewer.js' */
@@ -12,6 +12,8 @@ export class Moved extends EventTarget {
   orbit;
   /** What the picture is fitted to. @type {Frame | null} */
   box = null;
+  /** How near one may come, in the frame. */
+  nearest = NEAREST;
   #root;
   /** @type {FirstLook} */
   #firstLook = {};
@@ -152,6 +154,6 @@ export class Moved extends EventTarget {
 
   /** Puts what was asked for in terms of what is shown. */
   settle() {
-    this.orbit.settle(this.#firstLook, this.#limits, this.box);
+    this.orbit.settle(this.#firstLook, this.#limits, this.box, this.nearest);
   }
 }

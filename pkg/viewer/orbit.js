@@ -101,10 +101,11 @@ export class Orbit {
    * @param {import('../viewer.js').FirstLook} first
    * @param {import('../viewer.js').Limits} limits
    * @param {import('../viewer.js').Frame | null} frame
+   * @param {number} nearest how near one may come in the frame, where the limits do not say
    */
-  settle(first, limits, frame) {
+  settle(first, limits, frame, nearest) {
     this.#first = lookOf(first, frame);
-    this.#bounds = boundsOf(limits, frame);
+    this.#bounds = boundsOf(limits, frame, nearest);
     this.#camera.fov = within(this.#first.fov, this.#bounds.fov);
     this.#put(this.#place, this.#target);
   }
@@ -254,7 +255,7 @@ export class Orbit {
     else if (this.turning) this.#drift(passed);
     this.#glide(calm().wanted ? 1 : 1 - Math.exp(-FOLLOW * passed));
     const distance = this.#camera.position.length();
-    this.#camera.near = this.#parallel ? distance - 1 : Math.max(distance * 0.005, distance - 1);
+    this.#camera.near = this.#parallel ? distance - 1 : Math.max(Math.min(distance * 0.005, this.distance * 0.25), distance - 1);
     this.#camera.far = distance + 1;
     this.#camera.updateProjectionMatrix();
     if (this.#parallel) flatten(this.#camera, this.distance);

@@ -56,11 +56,11 @@ export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
     const eye = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, matrixWorld);
     const m = new Matrix4().multiplyMatrices(camera.projectionMatrix, eye).elements;
     const [ex, ey, ez, ew] = [eye.elements[2], eye.elements[6], eye.elements[10], eye.elements[14]];
-    const { array } = positions;
+    const { array, step, offset } = valuesOf(positions);
     for (let i = 0; i < positions.count; i++) {
-      const px = array[3 * i];
-      const py = array[3 * i + 1];
-      const pz = array[3 * i + 2];
+      const px = array[step * i + offset];
+      const py = array[step * i + offset + 1];
+      const pz = array[step * i + offset + 2];
       const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
       const dx = ((w + m[0] * px + m[4] * py + m[8] * pz + m[12]) * width) / 2 - w * x;
       const dy = ((w - m[1] * px - m[5] * py - m[9] * pz - m[13]) * height) / 2 - w * y;
@@ -78,6 +78,21 @@ export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
     before += positions.count;
   }
   return found;
+}
+
+/**
+ * Where an attribute's values lie. Files that are quantised put bytes between them, and may mean shares of the largest whole number.
+ * @param {import('three').BufferAttribute | import('three').InterleavedBufferAttribute} attribute
+ */
+function valuesOf(attribute) {
+  const { count, itemSize, normalized } = attribute;
+  if (normalized) {
+    const array = new Float32Array(itemSize * count);
+    for (let i = 0; i < array.length; i++) array[i] = attribute.getComponent(Math.floor(i / itemSize), i % itemSize);
+    return { array, step: itemSize, offset: 0 };
+  }
+  if ('data' in attribute) return { array: attribute.data.array, step: attribute.data.stride, offset: attribute.offset };
+  return { array: attribute.array, step: itemSize, offset: 0 };
 }
 
 /** The mean direction, by area, of the faces near one that stand as it does. @param {BufferGeometry} geometry @param {number} face */

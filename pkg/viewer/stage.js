@@ -10,7 +10,8 @@ import { boxesOf, edgesOf, free, layerOf, paint, tint } from './layers.js';
  *
  * What belongs together. Each layer has a bit of three.js, which the camera sees or not: the objects of a GLB stay in the tree that
  * they have.
- * @typedef {{ bit: number, objects: (Points | Mesh)[], points: boolean, outline: Float32Array }} Layer
+ * @typedef {{ bit: number, objects: (Points | Mesh)[], points: boolean, outline: Float32Array, streamed?: true }} Layer `streamed`: its
+ *   objects come and go with the camera, and are freed by who brings them
  */
 
 /** The bit of what is seen with every layer. */
@@ -61,15 +62,33 @@ export class Stage {
 
   /** Makes a layer of objects. @param {string} name @param {(Points | Mesh)[]} objects @param {Float32Array} outline */
   add(name, objects, outline) {
-    const taken = [...this.layers.values()].map(({ bit }) => bit);
-    const bit = BITS.find((one) => !taken.includes(one));
-    if (!bit) throw new RangeError(`a viewer has at most ${BITS.length} layers`);
+    const bit = this.#freeBit();
     this.layers.set(name, { bit, objects, points: objects[0].type === 'Points', outline });
     for (const object of objects) {
       object.layers.set(bit);
       this.#addEdges(object);
     }
     this.#tint();
+  }
+
+  /** Makes a layer of what streams. @param {string} name @param {Float32Array} outline */
+  open(name, outline) {
+    this.layers.set(name, { bit: this.#freeBit(), objects: [], points: name === 'points', outline, streamed: true });
+  }
+
+  /** An object of what streams is seen from now on. @param {string} name @param {Points | Mesh} object */
+  enter(name, object) {
+    const layer = /** @type {Layer} */ (this.layers.get(name));
+    layer.objects.push(object);
+    object.layers.set(layer.bit);
+    this.#tint();
+  }
+
+  /** It is not seen any more. @param {string} name @param {Points | Mesh} object */
+  leave(name, object) {
+    const objects = this.layers.get(name)?.objects ?? [];
+    const at = objects.indexOf(object);
+    if (at >= 0) objects.splice(at, 1);
   }
 
   clear() {
@@ -81,14 +100,15 @@ export class Stage {
 
   /** Nothing stays on the GPU. It comes back with the next frame. */
   free() {
-    for (const { objects } of this.layers.values()) objects.forEach(free);
+    for (const { objects, streamed } of this.layers.values()) if (!streamed) objects.forEach(free);
     this.#edges.forEach(free);
     if (this.#boxes) free(this.#boxes);
   }
 
   /** @param {string} name @param {Paint} how */
   paint(name, { colors, legend }) {
-    const painted = this.layers.get(name)?.objects.filter(({ userData }) => 'themed' in userData) ?? [];
+    const { objects = [], streamed } = this.layers.get(name) ?? {};
+    const painted = streamed ? [] : objects.filter(({ userData }) => 'themed' in userData);
     for (const object of painted) paint(object, colors, Boolean(legend));
     this.#tint();
   }
@@ -96,7 +116,7 @@ export class Stage {
   /** @param {boolean} shown */
   showEdges(shown) {
     this.#edgesShown = shown;
-    for (const { objects } of this.layers.values()) for (const object of objects) this.#addEdges(object);
+    for (const { objects, streamed } of this.layers.values()) if (!streamed) for (const object of objects) this.#addEdges(object);
     for (const edges of this.#edges.values()) edges.visible = shown;
     this.#tint();
   }
@@ -108,6 +128,13 @@ export class Stage {
     this.#boxes = boxesOf(corners, frame);
     this.root.add(this.#boxes);
     this.#tint();
+  }
+
+  #freeBit() {
+    const taken = [...this.layers.values()].map(({ bit }) => bit);
+    const bit = BITS.find((one) => !taken.includes(one));
+    if (!bit) throw new RangeError(`a viewer has at most ${BITS.length} layers`);
+    return bit;
   }
 
   /** Over its object, and seen with it. @param {Points | Mesh} object */

@@ -1,15 +1,16 @@
 /** A viewer: a canvas, what it shows, and how one moves around that. */
 import { Scene } from 'three';
-import { Aimed } from './aimed.js';
 import { contextOf, expectDrawable } from './checks.js';
 import { COLORS } from './colors.js';
 import { frameOf } from './frame.js';
 import { Ground } from './ground.js';
 import { MOVES, listenToKeys } from './keyboard.js';
 import { NEUTRAL } from './light.js';
+import { NEAREST } from './look.js';
 import { sharedPainter } from './painter.js';
 import { Size } from './size.js';
 import { ALWAYS, Stage } from './stage.js';
+import { Streaming } from './streaming.js';
 import { likelyUp, nearestAxis } from './upright.js';
 import { inSight } from './watching.js';
 
@@ -34,10 +35,9 @@ function isModel(what) {
   return typeof what === 'object' && what !== null && 'kind' in what;
 }
 
-class CanvasViewer extends Aimed {
+class CanvasViewer extends Streaming {
   scene = new Scene();
   context;
-  lit = false;
   #canvas;
   #painter = sharedPainter();
   #stage;
@@ -67,7 +67,7 @@ class CanvasViewer extends Aimed {
     super(stage, canvas, embedded, (by) => {
       // What turns by itself does not hide that somebody moved it.
       if (by !== 'program' || !this.#moved) this.#moved = by;
-      this.#ask();
+      this.ask();
     });
     this.#canvas = canvas;
     this.context = context;
@@ -115,13 +115,23 @@ class CanvasViewer extends Aimed {
     }
   }
 
+  /** Looks at what begins to stream, from the first look. @param {import('./tiles.js').Tiles} tiles */
+  begin({ frame, outline, up, nearest, kind = 'points' }) {
+    this.box = frame;
+    this.nearest = nearest;
+    this.#first = { up };
+    this.settle();
+    this.orbit.frame(outline, this.#standing);
+    this.view = kind;
+  }
+
   /** Replaces a layer, or removes it. The first of all is shown. @param {string} name @param {Drawable | null} what */
   set(name, what) {
     if (!what && !this.box) return;
     if (what) expectDrawable(what);
     const first = this.#stage.layers.size === 0;
     this.box ??= frameOf(/** @type {Drawable} */ (what));
-    this.#stage.set(name, what, this.box, () => this.#ask());
+    this.#stage.set(name, what, this.box, () => this.ask());
     this.#ground.stale();
     if (what && first) {
       const { up, seenFromAbove, origin } = what;
@@ -130,7 +140,7 @@ class CanvasViewer extends Aimed {
       this.orbit.frame(this.#stage.outline, this.#standing);
       this.view = name;
     } else this.orbit.widen(this.#stage.outline);
-    this.#ask();
+    this.ask();
   }
 
   /** @param {string} name */
@@ -161,26 +171,26 @@ class CanvasViewer extends Aimed {
   set view(view) {
     this.#view = view;
     this.#divide();
-    this.#ask();
+    this.ask();
   }
 
   /** @param {string} name @param {Paint} how */
   paint(name, how) {
     this.#stage.paint(name, how);
-    this.#ask();
+    this.ask();
   }
 
   /** @param {boolean} shown */
   showEdges(shown) {
     this.#stage.showEdges(shown);
-    this.#ask();
+    this.ask();
   }
 
   /** @param {Placed | null} corners the lowest and the highest of each box */
   showBoxes(corners) {
     if (!this.box) return;
     this.#stage.showBoxes(corners, this.box);
-    this.#ask();
+    this.ask();
   }
 
   /** @returns {LayerColors} */
@@ -191,7 +201,7 @@ class CanvasViewer extends Aimed {
   /** @param {Partial<LayerColors>} colors */
   set colors(colors) {
     this.#stage.colors = { ...this.#stage.colors, ...colors };
-    this.#ask();
+    this.ask();
   }
 
   /** @returns {Insets} */
@@ -236,7 +246,7 @@ class CanvasViewer extends Aimed {
 
   set pointSize(scale) {
     this.#pointSize = scale;
-    this.#ask();
+    this.ask();
   }
 
   /** @returns {[number, number, number] | null} */
@@ -254,7 +264,7 @@ class CanvasViewer extends Aimed {
     const before = this.#surroundings;
     this.#surroundings = /** @type {import('three').Texture | typeof NEUTRAL} */ (surroundings);
     if (before !== NEUTRAL) this.#painter.drop(before);
-    this.#ask();
+    this.ask();
   }
 
   get exposure() {
@@ -263,7 +273,7 @@ class CanvasViewer extends Aimed {
 
   set exposure(exposure) {
     this.#exposure = exposure;
-    this.#ask();
+    this.ask();
   }
 
   get shadow() {
@@ -272,7 +282,7 @@ class CanvasViewer extends Aimed {
 
   set shadow(strength) {
     this.#ground.strength = strength;
-    this.#ask();
+    this.ask();
   }
 
   /** Draws the shadow, where it is not what it was. @param {import('three').WebGLRenderer} renderer */
@@ -292,11 +302,13 @@ class CanvasViewer extends Aimed {
   }
 
   clear() {
+    this.endStream();
     this.#stage.clear();
     this.#ground.stale();
     this.box = null;
+    this.nearest = NEAREST;
     this.context.clearRect(0, 0, this.width, this.height);
-    this.#ask();
+    this.ask();
   }
 
   suspend() {
@@ -306,6 +318,7 @@ class CanvasViewer extends Aimed {
     this.#size.stop();
     inSight().delete(this.#canvas);
     this.#stage.free();
+    this.tiles?.free();
     this.#ground.free();
     if (this.#surroundings !== NEUTRAL) this.#painter.drop(this.#surroundings);
   }
@@ -318,7 +331,7 @@ class CanvasViewer extends Aimed {
     this.#size.follow();
     inSight().add(this.#canvas, (seen) => {
       this.#seen = seen;
-      if (seen) this.#ask();
+      if (seen) this.ask();
     });
   }
 
@@ -337,7 +350,7 @@ class CanvasViewer extends Aimed {
     const layer = this.#stage.layers.get(name);
     this.camera.layers.set(layer?.bit ?? ALWAYS);
     this.camera.layers.enable(ALWAYS);
-    this.#ground.plane.visible = this.#ground.strength > 0 && layer?.points === false;
+    this.#ground.plane.visible = this.#ground.strength > 0 && layer?.points === false && !layer.streamed;
     if (!layer?.points) return 0;
     const { parallel, distance } = this.orbit;
     const perUnit = (this.camera.projectionMatrix.elements[5] * this.height) / 2;
@@ -362,6 +375,7 @@ class CanvasViewer extends Aimed {
   /** @param {number} now */
   #draw(now) {
     this.orbit.update(now);
+    this.advance();
     if (this.sides.some(({ layer }) => this.has(layer))) this.#painter.paint(this);
     this.dispatchEvent(new Event('draw'));
     if (!this.#moved) return;
@@ -370,7 +384,7 @@ class CanvasViewer extends Aimed {
     this.dispatchEvent(new CustomEvent('move', { detail: { by } }));
   }
 
-  #ask() {
+  ask() {
     this.#painter.ask(this);
   }
 

@@ -151,18 +151,21 @@ pub fn split_points(positions: JsValue, origin: Vec<f64>) -> JsResult {
     ])
 }
 
-/// [`measures::sample`] of a leaf's places: `{ indices, range }`.
+/// [`measures::samples`] of a leaf's places: `{ indices, range }` of each.
 #[wasm_bindgen(js_name = sampleTile)]
-pub fn sample_tile(name: &str, places: &Uint32Array) -> JsResult {
-    let (indices, range) = measures::sample(tile(name)?, &triples(places));
-    let range = range
-        .as_flattened()
-        .iter()
-        .map(|&x| JsValue::from(x as f64));
-    object([
-        ("indices", Uint32Array::from(&indices[..]).into()),
-        ("range", range.collect::<Array>().into()),
-    ])
+pub fn sample_tile(name: &str, places: &Uint32Array, count: usize) -> Result<Array, JsValue> {
+    let samples = measures::samples(tile(name)?, &triples(places), count);
+    let each = samples.iter().map(|(indices, range)| {
+        let range = range
+            .as_flattened()
+            .iter()
+            .map(|&x| JsValue::from(x as f64));
+        object([
+            ("indices", Uint32Array::from(&indices[..]).into()),
+            ("range", range.collect::<Array>().into()),
+        ])
+    });
+    each.collect()
 }
 
 /// [`tiles::measure`] of an array of samples, with `{ ratio, count or spacing }` and `{ curvatureWeight }` of a reduction: the [`Measures`].

@@ -11,7 +11,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Points of a sample that count, at least.
-const INNER: usize = 2000;
+const INNER: usize = 500;
 /// Centres of a sub-domain, as [`crate::reduce`] has them.
 const CENTERS: f64 = 32.0;
 /// Points of a sub-domain, as there.
@@ -101,9 +101,17 @@ impl Measures {
     }
 }
 
-/// Points of a leaf to measure: their indices, and the range that counts; the same whenever the points are the same.
-pub fn sample(tile: Tile, places: &[[u32; 3]]) -> (Vec<u32>, [[u64; 3]; 2]) {
-    let middle = places.get(places.len() / 2).copied().unwrap_or_default();
+/// So many groups of neighbouring points of a leaf to measure, apart from each other: the indices of each, and the range that counts; the
+/// same whenever the points are the same.
+pub fn samples(tile: Tile, places: &[[u32; 3]], count: usize) -> Vec<(Vec<u32>, [[u64; 3]; 2])> {
+    let count = count.clamp(1, places.len().max(1));
+    let at = |i: usize| places.len() * (2 * i + 1) / (2 * count);
+    (0..count).map(|i| sample(tile, places, at(i))).collect()
+}
+
+/// The neighbours of a point.
+fn sample(tile: Tile, places: &[[u32; 3]], middle: usize) -> (Vec<u32>, [[u64; 3]; 2]) {
+    let middle = places.get(middle).copied().unwrap_or_default();
     let within = |half: u64, place: &[u32; 3]| {
         (0..3).all(|a| u64::from(place[a].abs_diff(middle[a])) <= half)
     };

@@ -7,8 +7,9 @@ import ts from 'typescript';
 import { silhouette } from '../page/pictures.mjs';
 import { ball, duckScan, glb, poster } from './files.mjs';
 import { blocks, painted, startSite, test } from './site.mjs';
+import { putTileset, tileset } from './tilesets.mjs';
 
-const [DOCUMENT, VIEWER] = ['embed', 'viewer'].map((name) => readFileSync(new URL(`../../pkg/docs/${name}.md`, import.meta.url), 'utf8'));
+const [DOCUMENT, VIEWER, TILES] = ['embed', 'viewer', 'tiles'].map((name) => readFileSync(new URL(`../../pkg/docs/${name}.md`, import.meta.url), 'utf8'));
 
 const site = await startSite();
 site.put('/docs/duck.ply', (await duckScan()).bytes);
@@ -42,6 +43,25 @@ for (const [i, html] of blocks(VIEWER, 'html').entries()) {
     await shown.keep(`docs-viewer-${i}`);
   });
 }
+
+putTileset(site, '/docs/hills', await tileset());
+for (const [i, html] of blocks(TILES, 'html').entries()) {
+  test(`page ${i + 1} of tiles.md`, async () => {
+    const shown = await site.visit(site.put(`/docs/tiles-${i}.html`, html));
+    await shown.page.waitForFunction(() => /^\d{4,5} of 16384 points, \d+ MB$/.test(document.querySelector('#status').textContent), null, { timeout: 60_000 });
+    await shown.drawn();
+    assert.ok(silhouette(await shown.page.locator(html.includes('<canvas') ? 'canvas' : 'point-weave').screenshot({ animations: 'disabled' })).area > 5000);
+    assert.deepEqual(shown.faults, []);
+  });
+}
+
+test('every option and number of what streams is documented', () => {
+  const types = readFileSync(new URL('../../pkg/viewer.d.ts', import.meta.url), 'utf8');
+  for (const head of ['StreamOptions', 'StreamState']) {
+    const [, body] = new RegExp(`interface ${head} \\{\n([^]*?)\n\\}`).exec(types);
+    for (const [, name] of body.matchAll(/^  (\w+)\??:/gm)) assert.ok(TILES.includes(`\`${name}\``), `${name} is in tiles.md`);
+  }
+});
 
 test('every option, member and event of a viewer is documented', () => {
   const types = readFileSync(new URL('../../pkg/viewer.d.ts', import.meta.url), 'utf8');

@@ -23,6 +23,7 @@ export function use() {
   element.addEventListener('progress', ({ detail }) => console.log(detail.stage, detail.overall.toFixed(2)));
   element.addEventListener('load', ({ detail }: CustomEvent<LoadDetail>) => console.log(detail.view satisfies View, detail.report?.outputPoints));
   element.addEventListener('error', ({ detail }) => console.log(detail.error.code));
+  element.addEventListener('stream', ({ detail: { points, bytes } }) => console.log(points + bytes));
   element.addEventListener('abort', ({ detail }) => console.log(detail.reason));
   element.addEventListener('click', (event) => event.clientX);
   PointWeaveElement.wasmUrl = 'https://example.org/wasm/';

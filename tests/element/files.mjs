@@ -47,9 +47,9 @@ export function ball(rings = 24, radius = 1, [x, y, z] = [0, 0, 0]) {
 }
 
 /**
- * A GLB of primitives with one colour each, at their vertices.
- * @param {{ positions: Float32Array, normals?: Float32Array, indices?: Uint32Array, color?: number[], material?: object }[]} primitives
- *   color: linear, 0-255; material: as in a glTF
+ * A GLB of primitives, with one colour each or one a vertex.
+ * @param {{ positions: Float32Array, normals?: Float32Array, indices?: Uint32Array, color?: number[], colors?: number[], material?: object }[]} primitives
+ *   color: linear, 0-255; colors: one for each vertex; material: as in a glTF
  * @param {{ required?: string[], meshopt?: boolean, at?: number[] }} [options] meshopt: compressed by EXT_meshopt_compression
  */
 export async function glb(primitives, { required = [], meshopt = false, at = [0, 0, 0] } = {}) {
@@ -80,11 +80,11 @@ export async function glb(primitives, { required = [], meshopt = false, at = [0,
     }
     return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType, count, type, ...extra }) - 1;
   };
-  for (const { positions, normals, indices, color, material } of primitives) {
+  for (const { positions, normals, indices, color, colors = color, material } of primitives) {
     const axis = (pick) => [0, 1, 2].map((k) => positions.reduce((best, value, i) => (i % 3 === k ? pick(best, value) : best), positions[k]));
     const attributes = {
       POSITION: accessor(positions, 'VEC3', FLOAT, { min: axis(Math.min), max: axis(Math.max) }),
-      ...(color && { COLOR_0: accessor(Uint8Array.from({ length: (4 * positions.length) / 3 }, (_, i) => [...color, 255][i % 4]), 'VEC4', BYTE, { normalized: true }) }),
+      ...(colors && { COLOR_0: accessor(Uint8Array.from({ length: (4 * positions.length) / 3 }, (_, i) => (i % 4 === 3 ? 255 : colors[(3 * (i >> 2) + (i % 4)) % colors.length])), 'VEC4', BYTE, { normalized: true }) }),
       ...(normals && { NORMAL: accessor(normals, 'VEC3', FLOAT) }),
     };
     const place = material && { material: (json.materials ??= []).push(material) - 1 };

@@ -20,6 +20,7 @@ const FLAGS = [
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml' };
 const IMPORTS = {
   pointweave: '/pointweave/index.js', 'pointweave/viewer': '/pointweave/viewer.js',
+  '3d-tiles-renderer': '/node_modules/3d-tiles-renderer/build/index.js',
   three: '/node_modules/three/build/three.module.js', 'three/addons/': '/node_modules/three/examples/jsm/',
 };
 const STRICT = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-map'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src 'self' data:";

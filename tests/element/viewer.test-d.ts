@@ -1,7 +1,7 @@
 // Never run: `tsc` checks that the viewer's types say what its documentation does, and that its functions agree.
 
 import * as declared from 'pointweave/viewer';
-import { canPaint, createViewer, frameOf, paintOf, readGlb, type Axis, type Paint, type Viewer } from 'pointweave/viewer';
+import { canPaint, createViewer, frameOf, paintOf, readGlb, type Axis, type Paint, type StreamState, type Viewer } from 'pointweave/viewer';
 import type { PointCloud, SurfaceMesh } from 'pointweave';
 import type * as written from '../../pkg/viewer/viewer.js';
 import type * as paints from '../../pkg/viewer/paints.js';
@@ -27,6 +27,10 @@ export async function use(canvas: HTMLCanvasElement, cloud: PointCloud, mesh: Su
   viewer.colors = { edges: 'black' };
   viewer.up = viewer.upright satisfies Axis;
   viewer.addEventListener('move', ({ detail: { by } }) => console.log(by satisfies 'pointer' | 'keys' | 'program'));
+  await viewer.stream('tileset.json', { budget: 1e8, errorTarget: 4, signal: AbortSignal.timeout(1000), onProgress: (share) => share.toFixed() });
+  viewer.addEventListener('stream', () => console.log((viewer.streamed satisfies StreamState | null)?.total?.toFixed()));
+  // @ts-expect-error no such option
+  viewer.stream('tileset.json', { memory: 1e8 });
   viewer.addEventListener('contextlost', () => viewer.suspend());
   // @ts-expect-error no such paint
   canPaint('heat', { cloud });

@@ -107,7 +107,7 @@ async function runUnder(t, code) {
 /** The fenced blocks of a page, each with the comment before it. */
 const FENCED = /(?:<!-- (.*) -->\n)?```(\w*)\n([^]*?)```/g;
 /** The pages of these have pictures in them: `tests/element` opens them. */
-const PICTURES = ['docs/embed.md', 'docs/viewer.md'];
+const PICTURES = ['docs/embed.md', 'docs/tiles.md', 'docs/viewer.md'];
 const names = ['../README.md', 'README.md', ...(await readdir(new URL('docs/', PACKAGE))).map((name) => `docs/${name}`)];
 const pages = await Promise.all(names.map(async (name) => ({ name, text: await readFile(new URL(name, PACKAGE), 'utf8') })));
 for (const { name, text } of pages) {

@@ -2,12 +2,15 @@ import { App } from './app.js';
 import { showBuilding } from './building.js';
 import { byId } from './dom.js';
 import { workOffline } from './offline.js';
+import { Streamed, isTileset } from './streaming/streamed.js';
 import { canCompute } from './support.js';
 import { translatePage } from './words/page-words.js';
 
 translatePage();
 
-if (canCompute()) new App().start();
+const src = new URLSearchParams(location.search).get('src');
+if (isTileset(src)) new Streamed(src).start();
+else if (canCompute()) new App().start();
 else {
   byId('app', HTMLElement).dataset.state = 'unsupported';
   byId('no-engine', HTMLElement).hidden = false;

@@ -250,7 +250,7 @@ fn make(builds: &[Build]) -> Result<()> {
     one_file()
 }
 
-/// `pkg/element.min.js`, made of the package's modules in no time.
+/// `pkg/element.min.js` and `pkg/element-tiles.min.js`, made of the package's modules in no time.
 fn one_file() -> Result<()> {
     packages::npm(&root().join("xtask"))?;
     let remedy = "the element's one file was not made; the error is above";

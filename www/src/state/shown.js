@@ -40,7 +40,7 @@ function remember(/** @type {number} */ step) {
 }
 
 /** @type {Value} */
-const NOTHING = { scan: null, edits: {}, settings: { target: null, values: {} }, look: { view: 'mesh', paint: 'natural' } };
+export const NOTHING = { scan: null, edits: {}, settings: { target: null, values: {} }, look: { view: 'mesh', paint: 'natural' } };
 
 /**
  * The one value that says what the page shows, with its history. The history is the browser's own: every step is an entry of it, so

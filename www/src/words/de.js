@@ -1,5 +1,6 @@
 import tidy from './de-tidy.js';
 import doubts from './de-doubts.js';
+import streaming from './de-streaming.js';
 import web from './de-web.js';
 
 /** The page's texts in German, by the English ones. @type {Record<string, string>} */
@@ -7,6 +8,7 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',
   'Skip to the controls': 'Zu den Einstellungen springen',
   'Points in, a light and correct model out': 'Punkte hinein, ein leichtes und korrektes Modell heraus',

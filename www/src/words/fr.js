@@ -1,5 +1,6 @@
 import tidy from './fr-tidy.js';
 import doubts from './fr-doubts.js';
+import streaming from './fr-streaming.js';
 import web from './fr-web.js';
 
 /** The page's texts in French, by the English ones. @type {Record<string, string>} */
@@ -7,6 +8,7 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave : un scan 3D devient un modèle léger et correct',
   'Skip to the controls': 'Aller aux réglages',
   'Points in, a light and correct model out': 'Des points en entrée, un modèle léger et correct en sortie',
