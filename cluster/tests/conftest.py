@@ -20,7 +20,7 @@ def scans(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scans")
     chance = random.Random(1)
     for strip, name in enumerate("abc"):
-        places = [(strip + chance.random(), 3 * chance.random()) for _ in range(800)]
+        places = [(strip + chance.random(), 3 * chance.random()) for _ in range(450)]
         lines = [f"{x:.4f} {y:.4f} {0.2 * x * x - 0.1 * x * y:.4f}" for x, y in places]
         (folder / f"{name}.xyz").write_text("\n".join(lines) + "\n")
     return folder

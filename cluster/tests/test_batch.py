@@ -19,7 +19,7 @@ def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("shelf")
     chance = random.Random(2)
     for place in ("deep/ball.xyz", "deep-ball.xyz"):
-        points = [[chance.gauss(0, 1) for _ in range(3)] for _ in range(800)]
+        points = [[chance.gauss(0, 1) for _ in range(3)] for _ in range(400)]
         lengths = [sum(x * x for x in point) ** 0.5 for point in points]
         lines = [" ".join(f"{x / length:.5f}" for x in point) for point, length in zip(points, lengths, strict=True)]
         (folder / place).parent.mkdir(exist_ok=True)
@@ -38,7 +38,7 @@ def test_reduced_as_by_the_plain_command_line(client: Client, shelf: Path, tmp_p
         alone = tmp_path / "alone.xyz"
         npm.pointweave(["reduce", entry["input"], "-o", str(alone), "--ratio=0.2"])
         assert (tmp_path / "out" / entry["output"]).read_bytes() == alone.read_bytes()
-        assert entry["report"]["outputPoints"] == 160
+        assert entry["report"]["outputPoints"] == 80
 
     again = reduce_many(client, str(shelf), str(tmp_path / "out"), format="xyz", ratio=0.2, resume=True)
     assert again == entries  # reports and their times are those of before
@@ -53,16 +53,18 @@ def test_two_scans_for_one_result_are_refused(client: Client, shelf: Path, tmp_p
 
 def test_a_catalogue_as_by_the_plain_command_line(client: Client, shelf: Path, tmp_path: Path) -> None:
     with pytest.raises(PointweaveError):
-        npm.pointweave(["catalogue", str(shelf), "-o", str(tmp_path / "plain"), "--triangles=500", "--threads=1", "--jobs=2"])
+        npm.pointweave(
+            ["catalogue", str(shelf), "-o", str(tmp_path / "plain"), "--triangles=200", "--texture=64", "--threads=1", "--jobs=2"]
+        )
     site = tmp_path / "site"
-    entries = catalogue(client, str(shelf), str(site), triangles=500)
+    entries = catalogue(client, str(shelf), str(site), triangles=200, texture=64)
     assert [entry["name"] for entry in entries] == ["bad", "deep-ball", "deep-ball-xyz"]
     assert untimed(contents(site)) == untimed(contents(tmp_path / "plain"))
     assert not (site / ".pointweave").exists()
 
     before = {path: path.stat().st_mtime_ns for path in site.glob("*/*")}
     (shelf / "deep/ball.xyz").rename(tmp_path / "ball.xyz")
-    assert catalogue(client, str(shelf), str(site), triangles=500) == entries[:2]
+    assert catalogue(client, str(shelf), str(site), triangles=200, texture=64) == entries[:2]
     assert {path: path.stat().st_mtime_ns for path in site.glob("*/*")} == {
         path: time for path, time in before.items() if path.parent.name != "deep-ball-xyz"
     }

@@ -22,7 +22,7 @@ def test_same_bytes_and_progress(client: Client, scans: Path, plain: dict[str, b
     told: list[tuple[str, int, int]] = []
     manifest = tiles(client, str(scans), str(tmp_path), progress=lambda *line: told.append(line), **OPTIONS)
     assert contents(tmp_path) == plain
-    assert manifest["points"] == 2400
+    assert manifest["points"] == 1350
     assert not (tmp_path / "work").exists()
     assert {stage for stage, *_ in told} == STAGES
     assert ("count", 3, 3) in told
@@ -84,7 +84,7 @@ def test_resume_after_the_client_was_killed(client: Client, scans: Path, plain: 
     assert contents(tmp_path) == plain
     assert made[0].stat().st_mtime_ns == before
     assert "count" not in again.stderr
-    assert tiles(client, str(scans), str(tmp_path), resume=True, **OPTIONS)["points"] == 2400  # nothing to do
+    assert tiles(client, str(scans), str(tmp_path), resume=True, **OPTIONS)["points"] == 1350  # nothing to do
     with pytest.raises(PointweaveError, match="has a tileset"):
         tiles(client, str(scans), str(tmp_path), **OPTIONS)
 
