@@ -118,7 +118,8 @@ def _run(command: str, client: Client, said: dict[str, Any]) -> int:
     progress = Terminal()
     if command == "tiles":
         manifest = tiles(client, progress=progress, **said)
-        _say(f"{said['output']}: {manifest['tiles']} tiles, {manifest['points']:,} points")
+        points, reduced, count = (manifest[name] for name in ("points", "reduced", "tiles"))
+        _say(f"{said['output']}: {points:,} points to {reduced:,} in {count} tiles")
         return 0
     if command == "reduce":
         entries = reduce_many(client, progress=progress, **said)
