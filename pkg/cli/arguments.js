@@ -69,8 +69,8 @@ function noCommand(first) {
   return `'${first}' looks like a file, and a command comes before it: did you mean pointweave reconstruct ${first} -o mesh.glb?`;
 }
 
-/** @param {Command} command @returns {import('node:util').ParseArgsConfig['options'] & {}} */
-function optionsOf(command) {
+/** How `parseArgs` is told of a command's flags. @param {Command} command @returns {import('node:util').ParseArgsConfig['options'] & {}} */
+export function optionsOf(command) {
   return {
     json: { type: 'boolean' },
     threads: { type: 'string' },

@@ -132,7 +132,7 @@ function listed(scans, entries) {
  * @returns {Promise<Source[]>}
  */
 async function scansIn(sources, site) {
-  /** @type {Source[]} */
+  /** @type {Omit<Source, 'name'>[]} */
   const found = [];
   for (const source of sources) {
     const at = await stat(source).catch(() => undefined);
@@ -142,17 +142,26 @@ async function scansIn(sources, site) {
     const own = files.filter((file) => !resolve(file).startsWith(resolve(site) + sep)).sort();
     for (const path of at.isDirectory() ? own : [source]) {
       const told = at.isDirectory() ? relative(source, path) : basename(path);
-      found.push({ path, source: told.replaceAll(sep, '/'), name: '' });
+      found.push({ path, source: told.replaceAll(sep, '/') });
     }
   }
+  const names = namesOf(found.map(({ source }) => source));
+  return found.map((scan, i) => ({ ...scan, name: names[i] }));
+}
+
+/**
+ * The folder of each scan, no two alike.
+ * @param {string[]} sources paths in the folder that was named
+ */
+export function namesOf(sources) {
+  /** @type {Set<string>} */
   const taken = new Set();
-  for (const scan of found) {
-    const bare = wordOf(scan.source.slice(0, scan.source.length - extname(scan.source).length));
-    const choices = [bare, wordOf(scan.source), ...Array.from({ length: found.length }, (_, i) => `${wordOf(scan.source)}-${i + 2}`)];
-    scan.name = /** @type {string} */ (choices.find((name) => !taken.has(name)));
-    taken.add(scan.name);
+  for (const source of sources) {
+    const bare = wordOf(source.slice(0, source.length - extname(source).length));
+    const choices = [bare, wordOf(source), ...Array.from({ length: sources.length }, (_, i) => `${wordOf(source)}-${i + 2}`)];
+    taken.add(/** @type {string} */ (choices.find((name) => !taken.has(name))));
   }
-  return found;
+  return [...taken];
 }
 
 /** What every server and disk takes as a name. @param {string} text */

@@ -71,7 +71,7 @@ export function tasksOf({ leaves, inner }) {
   const sorts = new Map();
   for (const { tile, files: parts } of leaves) {
     for (const [input, points] of parts) {
-      const task = sorts.get(input) ?? { id: `sort-${input}`, stage: 'sort', tile: `${input}`, input, needs: [PLAN], makes: [], weight: 0 };
+      const task = sorts.get(input) ?? { id: `sort-${input}`, stage: 'sort', tile: `${input}`, input, needs: [PLAN, countsPath(input)], makes: [], weight: 0 };
       task.makes.push(sortedPath(input, tile));
       task.weight = (task.weight ?? 0) + points;
       sorts.set(input, task);

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::shell::{Result, command, find, root, run, say};
 
@@ -72,14 +73,52 @@ pub fn formats() -> Result<PathBuf> {
 /// A Python with what tests/bench/`name`.txt lists, in a virtual environment in target/.
 fn python(name: &str, what: &str) -> Result<PathBuf> {
     let requirements = root().join(format!("tests/bench/{name}.txt"));
-    let environment = root().join("target").join(name);
-    let python = environment.join(if cfg!(windows) {
+    let python = environment(name);
+    installed(&python, &requirements, what, |pip| {
+        pip.arg("--requirement").arg(&requirements)
+    })?;
+    Ok(python)
+}
+
+/// A Python with the package in cluster/ as it stands, and what tests it.
+pub fn cluster() -> Result<PathBuf> {
+    let python = environment("cluster");
+    let described = root().join("cluster/pyproject.toml");
+    installed(&python, &described, "Dask and what tests with it", |pip| {
+        pip.arg("./cluster[test]")
+    })?;
+    let mut pip = pip(&python);
+    pip.args(["--no-deps", "--force-reinstall", "./cluster"]);
+    run(
+        &mut pip,
+        "the wheel of cluster/ cannot be built; its error is above",
+    )?;
+    Ok(python)
+}
+
+/// The Python of a virtual environment in target/.
+fn environment(name: &str) -> PathBuf {
+    let python = if cfg!(windows) {
         "Scripts/python.exe"
     } else {
         "bin/python"
-    });
+    };
+    root().join("target").join(name).join(python)
+}
+
+/// `pip install` in a virtual environment that is made anew, unless what `lock` names was installed last.
+fn installed(
+    python: &Path,
+    lock: &Path,
+    what: &str,
+    arguments: impl FnOnce(&mut Command) -> &mut Command,
+) -> Result<()> {
+    let environment = python
+        .ancestors()
+        .nth(2)
+        .expect("it lies in an environment");
     let stamp = environment.join("installed-requirements.txt");
-    unless_installed(&requirements, &stamp, || {
+    unless_installed(lock, &stamp, || {
         let system = find("python3")
             .or_else(|| find("python"))
             .ok_or("Python is missing; install Python 3.11 or newer with venv and pip")?;
@@ -88,20 +127,29 @@ fn python(name: &str, what: &str) -> Result<PathBuf> {
             environment.display()
         ));
         let mut venv = command(system);
-        venv.args(["-m", "venv", "--clear"]).arg(&environment);
+        venv.args(["-m", "venv", "--clear"]).arg(environment);
         run(
             venv.stdout(std::io::stderr()),
             "Python's venv or pip is missing; install both (Debian's package is python3-venv)",
         )?;
-        let mut pip = command(&python);
-        pip.args(["-m", "pip", "install", "--quiet", "--requirement"])
-            .arg(&requirements);
         run(
-            pip.stdout(std::io::stderr()),
+            arguments(&mut pip(python)),
             "pip failed; is the network there, and Python 3.11 or newer?",
         )
-    })?;
-    Ok(python)
+    })
+}
+
+fn pip(python: &Path) -> Command {
+    let mut pip = command(python);
+    pip.args([
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+    ])
+    .stdout(std::io::stderr());
+    pip
 }
 
 /// Installs what a lock file names, unless `stamp`, the lock that was last installed in full, is the same.

@@ -52,6 +52,7 @@ fn all(checks: &[Check], log: &mut Log) {
             Check::Page => log.step("page", || {
                 page::ensure().and_then(|()| node_tests("tests/page"))
             }),
+            Check::Cluster => log.step("cluster", cluster),
         }
     }
 }
@@ -63,6 +64,7 @@ fn one(check: Check, file: &str, name: Option<&str>) -> Result<()> {
         Check::Wasm => wasm_file(file, name),
         Check::Pkg => node_file("tests/pkg", file, name),
         Check::Element => node_file("tests/element", file, name),
+        Check::Cluster => cluster_file(file, name),
         _ => node_file("tests/page", file, name),
     }
 }
@@ -278,6 +280,43 @@ fn types() -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The Python package: its style, its types, and what it does on a cluster of this machine.
+fn cluster() -> Result<()> {
+    let python = packages::cluster()?;
+    for (tool, remedy) in [
+        (&["ruff", "check"][..], "ruff has complaints, see above"),
+        (
+            &["ruff", "format", "--check"],
+            "run `ruff format` in cluster/",
+        ),
+        (&["mypy"], "the types of cluster/ do not fit, see above"),
+        (&["pytest", "-q"], "tests failed, see above"),
+    ] {
+        run(&mut cluster_tool(&python, tool), remedy)?;
+    }
+    Ok(())
+}
+
+/// `test_FILE.py`, or its tests with `name` in theirs.
+fn cluster_file(file: &str, name: Option<&str>) -> Result<()> {
+    build::ensure()?;
+    let mut pytest = cluster_tool(&packages::cluster()?, &["pytest"]);
+    pytest.arg(format!("tests/test_{file}.py"));
+    if let Some(name) = name {
+        pytest.args(["-k", name]);
+    }
+    run(&mut pytest, "tests failed, see above")
+}
+
+fn cluster_tool(python: &Path, tool: &[&str]) -> Command {
+    let mut command = command(python);
+    command
+        .arg("-m")
+        .args(tool)
+        .current_dir(root().join("cluster"));
+    command
 }
 
 /// The tests in a folder, by Node's own runner.

@@ -13,11 +13,12 @@ pub enum Check {
     Pkg,
     Element,
     Page,
+    Cluster,
 }
 
 impl Check {
     /// The quick ones first.
-    const ALL: [(Check, &str); 8] = [
+    const ALL: [(Check, &str); 9] = [
         (Check::Fmt, "fmt"),
         (Check::Clippy, "clippy"),
         (Check::Native, "native"),
@@ -26,6 +27,7 @@ impl Check {
         (Check::Pkg, "pkg"),
         (Check::Element, "element"),
         (Check::Page, "page"),
+        (Check::Cluster, "cluster"),
     ];
 
     fn named(name: &str) -> Option<Self> {
@@ -46,7 +48,7 @@ impl Check {
     pub fn needs_package(self) -> bool {
         matches!(
             self,
-            Check::Types | Check::Pkg | Check::Element | Check::Page
+            Check::Types | Check::Pkg | Check::Element | Check::Page | Check::Cluster
         )
     }
 }
