@@ -33,15 +33,13 @@ export class Streaming extends Aimed {
     try {
       signal?.throwIfAborted();
       const { Tiles } = await import('./tiles.js');
-      const hearer = { changed: () => this.#changed(), told: () => this.dispatchEvent(new Event('stream')) };
+      const hearer = { changed: () => this.#changed(), began: () => this.#begun(), told: () => this.dispatchEvent(new Event('stream')) };
       const tiles = await Tiles.open(url, { ...options, signal: turn.signal }, this.#stage, hearer);
       if (turn.signal.aborted) tiles.dispose();
       turn.signal.throwIfAborted();
       this.tiles = tiles;
       this.begin(tiles);
       await tiles.there;
-      tiles.look();
-      this.begin(tiles);
       options.onProgress?.(1);
     } catch (error) {
       signal?.throwIfAborted();
@@ -57,6 +55,13 @@ export class Streaming extends Aimed {
   #changed() {
     this.ask();
     if (!this.tiles?.kind) requestAnimationFrame(() => this.tiles?.kind ?? this.advance());
+  }
+
+  /** The first that came says more closely where all of it is, before it is drawn. */
+  #begun() {
+    if (!this.tiles) return;
+    this.begin(this.tiles);
+    this.orbit.update(performance.now());
   }
 
   /** Chooses what the next picture needs. */

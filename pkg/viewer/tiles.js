@@ -41,7 +41,7 @@ const NEAREST = { least: 1e-5, most: 0.02 };
 /** Enough vertices to know how large something looks. */
 const OUTLINE = 4096;
 
-/** What is told by whoever shows it. @typedef {{ changed: () => void, told: () => void }} Hearer */
+/** Who hears that another picture is needed, that the first is there to be looked at, and of a new state. @typedef {{ changed: () => void, began: () => void, told: () => void }} Hearer */
 
 export class Tiles {
   /** The box of the root, in the tileset's frame. @type {Frame} */
@@ -201,7 +201,12 @@ export class Tiles {
     renderer.setCamera(camera);
     renderer.setResolution(camera, width / ratio, height / ratio);
     this.#relax(`${camera.matrixWorld.elements} ${camera.projectionMatrix.elements}`);
+    const waits = !this.kind;
     this.#choose();
+    if (waits && this.kind) {
+      this.#look();
+      this.#hearer.began();
+    }
     for (let i = 0; i < 40 && this.#objects > MOST_OBJECTS; i++) {
       this.#fades.hurry();
       if (this.#objects <= MOST_OBJECTS) break;
@@ -314,7 +319,7 @@ export class Tiles {
   }
 
   /** A few of the vertices that are seen. */
-  look() {
+  #look() {
     const objects = [...this.#stage.layers.values()].flatMap(({ objects }) => objects);
     const toFrame = new Matrix4().copy(this.#stage.root.matrixWorld).invert();
     this.outline = joined(objects.map((object) =>

@@ -3,7 +3,7 @@
 import { createEngine } from 'pointweave';
 import { MeshoptEncoder } from 'meshoptimizer';
 
-const FLOAT = 5126, BYTE = 5121, UINT = 5125;
+const FLOAT = 5126, BYTE = 5121, SHORT = 5123, UINT = 5125;
 
 /** A generated scan of a toy duck, y up, as a file and as points. */
 export async function duckScan({ count = 3000, format = 'ply' } = {}) {
@@ -50,13 +50,14 @@ export function ball(rings = 24, radius = 1, [x, y, z] = [0, 0, 0]) {
  * A GLB of primitives, with one colour each or one a vertex.
  * @param {{ positions: Float32Array, normals?: Float32Array, indices?: Uint32Array, color?: number[], colors?: number[], material?: object }[]} primitives
  *   color: linear, 0-255; colors: one for each vertex; material: as in a glTF
- * @param {{ required?: string[], meshopt?: boolean, at?: number[] }} [options] meshopt: compressed by EXT_meshopt_compression
+ * @param {{ required?: string[], meshopt?: boolean, at?: number[], step?: number }} [options] meshopt: compressed by EXT_meshopt_compression;
+ *   step: positions are whole numbers of so much from `at`, KHR_mesh_quantization
  */
-export async function glb(primitives, { required = [], meshopt = false, at = [0, 0, 0] } = {}) {
+export async function glb(primitives, { required = [], meshopt = false, at = [0, 0, 0], step } = {}) {
   await MeshoptEncoder.ready;
   const parts = [];
   const json = {
-    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, translation: at }],
+    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, translation: at, ...(step && { scale: [step, step, step] }) }],
     meshes: [{ primitives: [] }], accessors: [], bufferViews: [], buffers: [{ byteLength: 0 }],
   };
   let length = 0;
@@ -80,10 +81,18 @@ export async function glb(primitives, { required = [], meshopt = false, at = [0,
     }
     return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType, count, type, ...extra }) - 1;
   };
+  /** Each place has four bytes' alignment: one number in four means nothing. */
+  const quantized = (positions, extra) => {
+    const count = positions.length / 3;
+    const bytes = Buffer.from(Uint16Array.from({ length: 4 * count }, (_, i) => (i % 4 < 3 ? positions[3 * (i >> 2) + (i % 4)] : 0)).buffer);
+    json.bufferViews.push({ buffer: 0, byteOffset: append(bytes), byteLength: bytes.length, byteStride: 8 });
+    required = [...required, 'KHR_mesh_quantization'];
+    return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: SHORT, count, type: 'VEC3', ...extra }) - 1;
+  };
   for (const { positions, normals, indices, color, colors = color, material } of primitives) {
     const axis = (pick) => [0, 1, 2].map((k) => positions.reduce((best, value, i) => (i % 3 === k ? pick(best, value) : best), positions[k]));
     const attributes = {
-      POSITION: accessor(positions, 'VEC3', FLOAT, { min: axis(Math.min), max: axis(Math.max) }),
+      POSITION: step ? quantized(positions, { min: axis(Math.min), max: axis(Math.max) }) : accessor(positions, 'VEC3', FLOAT, { min: axis(Math.min), max: axis(Math.max) }),
       ...(colors && { COLOR_0: accessor(Uint8Array.from({ length: (4 * positions.length) / 3 }, (_, i) => (i % 4 === 3 ? 255 : colors[(3 * (i >> 2) + (i % 4)) % colors.length])), 'VEC4', BYTE, { normalized: true }) }),
       ...(normals && { NORMAL: accessor(normals, 'VEC3', FLOAT) }),
     };

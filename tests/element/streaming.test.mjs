@@ -13,7 +13,9 @@ const site = await startSite();
 const ORIGIN = [400_000.125, 5_700_000.5, 100.375];
 const SIZE = 100;
 const SIDE = 32;
-const hills = await tileset({ origin: ORIGIN, size: SIZE, side: SIDE });
+/** Places are whole numbers of 2 mm. */
+const STEP = 2 ** -9;
+const hills = await tileset({ origin: ORIGIN, size: SIZE, side: SIDE, step: STEP });
 const points = putTileset(site, '/points', hills);
 const field = await tileset({ kind: 'mesh', origin: ORIGIN, meshopt: true });
 const mesh = putTileset(site, '/mesh', field);
@@ -98,7 +100,7 @@ test('points: whole at first, finer where one comes near, exact where one points
   const local = found.position.map((value, axis) => value - ORIGIN[axis]);
   const step = SIZE / SIDE / 4;
   const place = [0, 1].map((axis) => (Math.round(local[axis] / step - 0.5) + 0.5) * step);
-  const expected = [...place, Math.fround(SIZE * height(place[0] / SIZE, place[1] / SIZE))];
+  const expected = [...place, SIZE * height(place[0] / SIZE, place[1] / SIZE)].map((value) => STEP * Math.round(value / STEP));
   for (let axis = 0; axis < 3; axis++) assert.ok(Math.abs(local[axis] - expected[axis]) < 2e-8, `${local} is not ${expected}`);
   const back = await act((position) => viewer.project(position), found.position);
   assert.ok(Math.hypot(back.x - 240, back.y - 180) < 60 && back.visible, JSON.stringify(back));

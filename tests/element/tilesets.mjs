@@ -12,10 +12,10 @@ const linear = (byte) => Math.round(255 * (byte / 255 <= 0.04045 ? byte / 255 / 
 
 /**
  * The files of a tileset by path. The field is `size` wide and deep, its lowest corner in `origin`; each level has 4 times the tiles.
- * @param {{ kind?: 'points' | 'mesh', levels?: number, side?: number, size?: number, origin?: number[], own?: boolean, meshopt?: boolean }} [options]
- *   side: steps of a tile's grid; own: says that it is of `pointweave tiles`
+ * @param {{ kind?: 'points' | 'mesh', levels?: number, side?: number, size?: number, origin?: number[], own?: boolean, meshopt?: boolean, step?: number }} [options]
+ *   side: steps of a tile's grid; own: says that it is of `pointweave tiles`; step: points are whole numbers of it
  */
-export async function tileset({ kind = 'points', levels = 3, side = 32, size = 100, origin = [0, 0, 0], own = true, meshopt = false } = {}) {
+export async function tileset({ kind = 'points', levels = 3, side = 32, size = 100, origin = [0, 0, 0], own = true, meshopt = false, step } = {}) {
   const files = new Map();
   const spacing = (level) => size / side / 2 ** level;
   const low = -0.1 * size;
@@ -42,7 +42,9 @@ export async function tileset({ kind = 'points', levels = 3, side = 32, size = 1
       }
     }
     const uri = `${kind}/${level}-${i}-${j}-0.glb`;
-    files.set(uri, await glb([{ positions: Float32Array.from(vertices), colors, ...(indices.length && { indices: Uint32Array.from(indices) }) }], { meshopt }));
+    const corner = step && [0, 1, 2].map((axis) => step * Math.floor(Math.min(...vertices.filter((_, i) => i % 3 === axis)) / step));
+    const positions = Float32Array.from(step ? vertices.map((value, i) => Math.round((value - corner[i % 3]) / step)) : vertices);
+    files.set(uri, await glb([{ positions, colors, ...(indices.length && { indices: Uint32Array.from(indices) }) }], { meshopt, step, at: corner }));
     const edge = size / 2 ** level;
     const children = [];
     for (let k = 0; level + 1 < levels && k < 4; k++) children.push(await tile(level + 1, 2 * i + (k & 1), 2 * j + (k >> 1)));

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { sample } from 'pointweave';
-import { PATIENCE, sharedFile, sharedFolder, start } from './browser.mjs';
+import { PATIENCE, sharedFile, start } from './browser.mjs';
 import { difference, expectedSilhouette, overlap, silhouette } from './pictures.mjs';
 import { mergedBunny, parseOni, parsePcd, parseXyz, toPly } from './scans.mjs';
 
@@ -89,21 +89,6 @@ test('real scans', { timeout: 4 * PATIENCE }, async (t) => {
     await checkResult(t, site, 'pig', Array.from({ length: 171_875 }, (_, i) => positions.subarray(3 * i, 3 * i + 3)));
     assert.equal(await site.number('boundaryEdges'), 0);
     assert.equal(await site.number('components'), 1);
-  });
-
-  await t.test('hostile files: each one is shown or explained', async (t) => {
-    const outcomes = { shown: 0, explained: 0 };
-    for (const [name, bytes] of await sharedFolder('hostile')) {
-      await site.drop(name, bytes);
-      await site.settled();
-      const shown = (await site.page.innerText('#caption-title')) === name;
-      const explained = await site.page.isVisible('#message');
-      assert.ok(shown || explained, `${name}: nothing happened`);
-      if (explained) assert.match(await site.message(), /\[[a-z-]+\]/);
-      assert.doesNotMatch(explained ? await site.message() : '', /\[internal\]/, name);
-      outcomes[explained ? 'explained' : 'shown'] += 1;
-    }
-    t.diagnostic(`hostile files: ${outcomes.shown} shown, ${outcomes.explained} explained`);
   });
 
   assert.deepEqual(site.faults, []);
