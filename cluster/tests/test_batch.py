@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import re
 from pathlib import Path
@@ -62,12 +63,17 @@ def test_a_catalogue_as_by_the_plain_command_line(client: Client, shelf: Path, t
     assert untimed(contents(site)) == untimed(contents(tmp_path / "plain"))
     assert not (site / ".pointweave").exists()
 
+    # Another's folder that only looks like one of ours is not touched.
+    manifest = json.loads((site / "catalogue.json").read_text())
+    (site / "catalogue.json").write_text(json.dumps([*manifest, {"name": "../plain", "key": "1"}]))
+
     before = {path: path.stat().st_mtime_ns for path in site.glob("*/*")}
     (shelf / "deep/ball.xyz").rename(tmp_path / "ball.xyz")
     assert catalogue(client, str(shelf), str(site), triangles=200, texture=64) == entries[:2]
     assert {path: path.stat().st_mtime_ns for path in site.glob("*/*")} == {
         path: time for path, time in before.items() if path.parent.name != "deep-ball-xyz"
     }
+    assert (tmp_path / "plain").exists()
 
 
 def untimed(files: dict[str, bytes]) -> dict[str, bytes]:

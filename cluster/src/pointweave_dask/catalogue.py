@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -19,6 +20,8 @@ from .store import ASIDE, StorageOptions, Store
 
 MANIFEST = "catalogue.json"
 ENTRIES = f"{ASIDE}/entries"
+#: What `pointweave catalogue` calls a folder of its own.
+_NAME = re.compile("[a-z0-9]+(-[a-z0-9]+)*")
 
 
 def catalogue(
@@ -59,10 +62,20 @@ def catalogue(
 def _known(store: Store) -> dict[str, dict[str, Any]]:
     """What earlier runs made, by name: those that ended, and one that did not. Whose files are not all there is made anew."""
     there = store.files()
-    manifest = store.json(MANIFEST) if MANIFEST in there else []
-    unfinished = [store.json(path) for path in sorted(there) if path.startswith(f"{ENTRIES}/")]
-    entries = {entry["name"]: entry for entry in [*manifest, *unfinished]}
-    return {name: entry for name, entry in entries.items() if there.issuperset(_files(entry))}
+    manifests = [MANIFEST] if MANIFEST in there else []
+    unfinished = sorted(path for path in there if path.startswith(f"{ENTRIES}/"))
+    entries = [entry for path in [*manifests, *unfinished] for entry in _entries(store, path)]
+    known = {entry["name"]: entry for entry in entries if _NAME.fullmatch(entry["name"])}
+    return {name: entry for name, entry in known.items() if there.issuperset(_files(entry))}
+
+
+def _entries(store: Store, path: str) -> list[dict[str, Any]]:
+    """Of a file that another run wrote; one that is damaged holds none."""
+    try:
+        entries: list[dict[str, Any]] = store.json(path)
+        return [entry for entry in entries if entry["key"]]
+    except (ValueError, TypeError, KeyError):
+        return []
 
 
 def _make(store: Store, scan: Scan, name: str, flags: Flags, known: dict[str, Any] | None) -> dict[str, Any]:
@@ -88,7 +101,7 @@ def _make(store: Store, scan: Scan, name: str, flags: Flags, known: dict[str, An
         _rename(site, own, name)
         path = f"{ENTRIES}/{name}.json"
         (site / path).parent.mkdir(parents=True)
-        (site / path).write_text(json.dumps(entry), encoding="utf-8")
+        (site / path).write_text(json.dumps([entry]), encoding="utf-8")
         store.put([*_files(entry), path], site)
         for stale in set(_files(known) if known else []) - set(_files(entry)):
             store.remove(stale)

@@ -26,12 +26,13 @@ COMMANDS = {
     "catalogue": "a folder of scans as a web page of light models",
 }
 #: Flags of the command line that mean something else here, or nothing.
-_OTHERS = {"help", "out", "out-dir", "json", "threads", "jobs", "resume", "keep-work"}
+_OTHERS = {"help", "out", "out-dir", "json", "threads", "jobs", "resume", "keep-work", "tile", "input", "stage"}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Ends with 0 done, 1 failed, 2 usage, 130 interrupted."""
     words = list(sys.argv[1:] if argv is None else argv)
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is said in one line of our own
     try:
         if not words or words[0] not in COMMANDS:
             return _overview(words)
@@ -44,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _say(error.message)
         return 2 if error.code == "usage" else 1
     except KeyboardInterrupt:
-        _say("interrupted: --resume goes on")
+        _say("interrupted: what is done stays")
         return 130
 
 

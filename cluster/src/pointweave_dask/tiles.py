@@ -42,7 +42,7 @@ def tiles(
     """Makes a tileset of scans, and returns its ``manifest.json``.
 
     ``inputs`` are URLs of files, folders and patterns, ``output`` is the URL of a folder. ``options`` are those of
-    ``pointweave tiles``: ``spacing=0.05``, ``tile_points=1_000_000``, ``mesh=True``.
+    ``pointweave tiles``: ``spacing=0.05``, ``tile_points=1_000_000``.
 
     ``resume`` goes on with what an earlier run of the same scans with the same options left. ``keep_work`` leaves the folder
     ``work``. ``retries`` is how often a task is tried again. ``storage_options`` are fsspec's, by protocol.
