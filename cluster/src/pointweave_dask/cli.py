@@ -32,7 +32,8 @@ _OTHERS = {"help", "out", "out-dir", "json", "threads", "jobs", "resume", "keep-
 def main(argv: Sequence[str] | None = None) -> int:
     """Ends with 0 done, 1 failed, 2 usage, 130 interrupted."""
     words = list(sys.argv[1:] if argv is None else argv)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is said in one line of our own
+    for logger in ("distributed", "distributed.client"):
+        logging.getLogger(logger).setLevel(logging.CRITICAL)  # what matters is said in one line of our own
     try:
         if not words or words[0] not in COMMANDS:
             return _overview(words)
