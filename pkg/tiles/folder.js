@@ -29,7 +29,7 @@ export class Folder {
       return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.length).slice();
     } catch (error) {
       this.signal.throwIfAborted();
-      throw new PointweaveError({ code: 'missing-step', message: `${this.at(name)} cannot be read (${/** @type {any} */ (error).code}): the step that makes it has not run`, expected: name });
+      throw new PointweaveError({ code: 'bad-file', message: `${this.at(name)} cannot be read (${/** @type {any} */ (error).code}): the step that makes it has not run`, expected: name });
     }
   }
 

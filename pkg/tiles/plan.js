@@ -1,4 +1,5 @@
 /** What is to be done: every task with the files that it needs and makes. A task may run when all that it needs is there. */
+import { SCRIPTS } from './page.js';
 
 /**
  * @typedef {'sort' | 'measure' | 'density' | 'make' | 'level' | 'finish'} Stage
@@ -49,6 +50,7 @@ const SAMPLES = 256;
 export const PLAN = 'work/plan.json';
 export const DENSITY = 'work/density.json';
 export const TILESET = 'tileset.json';
+export const PAGE = 'index.html';
 export const MANIFEST = 'manifest.json';
 /** @param {number} input */
 export const countsPath = (input) => `work/counts/${input}.json`;
@@ -96,7 +98,7 @@ export function tasksOf({ leaves, inner }) {
     { id: 'density', stage: 'density', needs: [PLAN, ...sampled.map(samplePath)], makes: [DENSITY] },
     ...made,
     ...levels,
-    { id: 'finish', stage: 'finish', needs: [PLAN, DENSITY, ...facts], makes: [TILESET, MANIFEST] },
+    { id: 'finish', stage: 'finish', needs: [PLAN, DENSITY, ...facts], makes: [TILESET, PAGE, ...SCRIPTS, MANIFEST] },
   ];
 }
 

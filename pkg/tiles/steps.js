@@ -1,12 +1,13 @@
 /** The steps of tiles, each by its stage: what it reads from the folder and what it writes there. They hold nothing between them. */
-import { appendFile, mkdir, rename, stat } from 'node:fs/promises';
+import { appendFile, mkdir, readFile, rename, stat } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { compressorFor } from '../files/compressor.js';
 import { PointweaveError } from '../engine/errors.js';
 import { decode, encode, joined, selected } from './columns.js';
 import { sha256 } from './folder.js';
 import { version, withModule } from './modules.js';
-import { DENSITY, MANIFEST, PLAN, TILESET, countsPath, factsPath, glbPath, madePath, samplePath, sortedPath, tasksOf } from './plan.js';
+import { SCRIPTS, pageOf } from './page.js';
+import { DENSITY, MANIFEST, PAGE, PLAN, TILESET, countsPath, factsPath, glbPath, madePath, samplePath, sortedPath, tasksOf } from './plan.js';
 import { columnsOf, leavesOut, positionsOf, readScan, toldOf } from './scan.js';
 import { tilesetOf } from './tileset.js';
 
@@ -245,19 +246,23 @@ function boxOf(places, size) {
 }
 
 /**
- * Writes the tileset.
+ * Writes the tileset, and a page that shows it.
  * @param {Folder} folder
  */
 export async function finish(folder) {
   const made = await planOf(folder);
   const { octree, inputs, options } = made;
+  /** @type {import('./tileset.js').Facts[]} */
   const facts = [];
   for (const { tile } of [...octree.inner.toReversed(), ...octree.leaves]) facts.push(await folder.json(factsPath(tile)));
   const measures = await folder.json(DENSITY);
-  const text = new TextEncoder().encode(`${JSON.stringify(tilesetOf(made, facts, measures))}\n`);
-  await folder.write(TILESET, text);
-  /** @type {[string, { bytes: number, sha256: string }][]} */
-  const files = [[TILESET, { bytes: text.length, sha256: sha256(text) }], ...facts.map((/** @type {any} */ { tile, bytes, sha256: hash }) => /** @type {[string, any]} */ ([glbPath(tile), { bytes, sha256: hash }]))];
+  const text = new TextEncoder();
+  /** @type {[string, Uint8Array][]} */
+  const written = [[TILESET, text.encode(`${JSON.stringify(tilesetOf(made, facts, measures))}\n`)], [PAGE, text.encode(pageOf(made))]];
+  for (const script of SCRIPTS) written.push([script, await readFile(new URL(`../${script}`, import.meta.url))]);
+  for (const [name, bytes] of written) await folder.write(name, bytes);
+  const tiles = facts.map(({ tile, bytes, sha256: sum }) => [glbPath(tile), { bytes, sha256: sum }]);
+  const files = Object.fromEntries([...written.map(([name, bytes]) => [name, { bytes: bytes.length, sha256: sha256(bytes) }]), ...tiles]);
   const leaves = facts.filter((fact) => fact.level === 0);
   await folder.writeJson(MANIFEST, {
     version: VERSION,
@@ -270,7 +275,7 @@ export async function finish(folder) {
     tiles: facts.length,
     spacing: measures.target,
     noise: measures.noise,
-    files: Object.fromEntries(files),
+    files,
   });
 }
 

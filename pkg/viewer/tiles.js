@@ -215,8 +215,10 @@ export class Tiles {
     }
     const { refused } = renderer.stats;
     if (refused && this.#largest && this.#used > 0.75 * this.#room) this.#strain *= STEP;
+    // After the last step comes one more picture, which tells what is left.
+    const fading = this.#fades.running;
     this.#fades.step();
-    if (refused || this.#fades.running) this.#hearer.changed();
+    if (refused || fading) this.#hearer.changed();
     this.#tell();
   }
 

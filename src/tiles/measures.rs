@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Points of a sample that count, at least.
 const INNER: usize = 500;
-/// Centres of a sub-domain, as [`crate::reduce`] has them.
+/// Centres of a sub-domain, as [`mod@crate::reduce`] has them.
 const CENTERS: f64 = 32.0;
 /// Points of a sub-domain, as there.
 const FEWEST: usize = 64;

@@ -28,6 +28,9 @@ impl Leaf {
     }
 }
 
+/// A cell of the counts inside of the root, and its points of each file.
+type Cell = ([u32; 3], Vec<(usize, u64)>);
+
 /// The octree of tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -153,7 +156,7 @@ impl Plan {
 /// Cuts a tile: `cells` are the counts of those in it, `depth` levels below the root.
 fn cut(
     tile: Tile,
-    cells: Vec<([u32; 3], Vec<(usize, u64)>)>,
+    cells: Vec<Cell>,
     (depth, most): (u32, u64),
     leaves: &mut Vec<Leaf>,
 ) {

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// of the tiles below; those of the tile and of what touches it. `attributes` say how scalars and colours are carried.
 ///
 /// # Errors
-/// [`Error::BadOption`] (`attributes`), [`Error::Cancelled`].
+/// [`crate::Error::BadOption`] (`attributes`), [`crate::Error::Cancelled`].
 pub fn reduce(
     points: &Points,
     (tile, level): (Tile, u32),

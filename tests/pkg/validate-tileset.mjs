@@ -123,6 +123,7 @@ export async function validateTileset(from) {
     for (const [path, { bytes, sha256 }] of Object.entries(files)) {
       const body = await read(path);
       check(body?.length === bytes, 'manifest', `${path} has ${body?.length} bytes: expected ${bytes}`);
+      named.add(path);
       check(body && createHash('sha256').update(body).digest('hex') === sha256, 'manifest', `${path} has another sha256`);
     }
     for (const path of named) check(path in files || path === 'manifest.json', 'manifest', `${path} is not in it`);
