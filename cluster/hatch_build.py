@@ -14,7 +14,7 @@ class NpmPackage(BuildHookInterface):  # type: ignore[type-arg]
         # An editable install finds pkg/ beside cluster/.
         if version == "editable":
             return
-        for built in ("wasm", "element.min.js"):
+        for built in ("wasm", "element.min.js", "element-tiles.min.js"):
             if not (NPM / built).exists():
                 raise SystemExit(f"{NPM / built} is not built: run `cargo xtask build` in {NPM.parent}, then install again")
         files = json.loads((NPM / "package.json").read_text())["files"]
