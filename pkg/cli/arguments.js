@@ -73,7 +73,7 @@ function noCommand(first) {
 export function optionsOf(command) {
   return {
     json: { type: 'boolean' },
-    threads: { type: 'string' },
+    ...(command !== 'tiles' && { threads: { type: 'string' } }),
     help: { type: 'boolean', short: 'h' },
     ...READ_FLAGS,
     ...(command === 'tiles' && { out: { type: 'string', short: 'o' }, unit: CLOUD_FLAGS.unit, ...TILES_FLAGS }),

@@ -86,7 +86,7 @@ ${filled.map(([title, lines]) => `${title}\n${rows(/** @type {string[][]} */ (li
 /** @param {string[][]} read */
 function tilesHelp(read) {
   const unit = CLOUD_ROWS.filter(([flag]) => flag.startsWith('--unit'));
-  const sections = [['Tiles', TILES_ROWS], [`A step alone, for schedulers: ${STEPS.join(', ')}`, STEP_ROWS], ['Scan', [...read, ...READ_ROWS, ...unit]], ['General', COMMON]];
+  const sections = [['Tiles', TILES_ROWS], [`A step alone, for schedulers: ${STEPS.join(', ')}`, STEP_ROWS], ['Scan', [...read, ...READ_ROWS, ...unit]], ['General', COMMON.filter(([flag]) => !flag.startsWith('--threads'))]];
   return `pointweave tiles: ${DOES.tiles}
 
   pointweave tiles scan.laz more.e57 folder/ -o tiles/ [options]

@@ -1,6 +1,6 @@
 /** A scan of any size as tiles that a page streams: all steps on this machine, or one of them for a scheduler. */
 import { readdir, stat } from 'node:fs/promises';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { isScan } from '../files/archive.js';
 import { compressorFor } from '../files/compressor.js';
 import { Folder } from '../tiles/folder.js';
@@ -35,19 +35,23 @@ export async function tiles({ json }, said, signal) {
   const inputs = await inputsOf(said.inputs);
   await compressorFor(said.options.meshopt); // that its packages are missing is known before the work
   await makeFolder(said.folder);
-  if (await isDone(folder, said)) {
+  const given = await givenOf(inputs);
+  if (await isDone(folder, said, given)) {
     say(`${said.folder}: nothing to do`);
     return true;
   }
   const workers = new Workers(folder, said.jobs);
   try {
-    const made = await planned(workers, inputs, said);
+    const made = await planned(workers, inputs, given, said);
     await runAll(workers, made.tasks, inputs, teller(made));
   } finally {
     await workers.end();
   }
   const manifest = await folder.json(MANIFEST);
-  if (!said.keepWork) await folder.remove('work');
+  if (!said.keepWork) {
+    await folder.remove('work/inputs.json'); // without it a stop in between leaves no work that is gone on with
+    await folder.remove('work');
+  }
   if (json) process.stdout.write(`${JSON.stringify(manifest, null, 2)}\n`);
   const { points, reduced, tiles: count, strays } = manifest;
   const left = strays ? `, ${strays} far from all others were left out` : '';
@@ -55,14 +59,18 @@ export async function tiles({ json }, said, signal) {
   return true;
 }
 
+/** What tells whether the files are those of an earlier run. @param {string[]} inputs */
+function givenOf(inputs) {
+  return Promise.all(inputs.map(async (input) => ({ name: basename(input), bytes: (await stat(input)).size })));
+}
+
 /**
  * Counts what is not counted, and plans; or goes on with the plan that is there.
- * @param {Workers} workers @param {string[]} inputs @param {TilesSaid} said
+ * @param {Workers} workers @param {string[]} inputs @param {Awaited<ReturnType<typeof givenOf>>} given @param {TilesSaid} said
  */
-async function planned(workers, inputs, { options, resume, folder: path }) {
+async function planned(workers, inputs, given, { options, resume, folder: path }) {
   const { folder } = workers;
-  const names = await Promise.all(inputs.map(async (input) => ({ path: input, bytes: (await stat(input)).size })));
-  const key = JSON.stringify({ options, names });
+  const key = JSON.stringify({ options, given });
   const there = await folder.has('work/inputs.json');
   if (there && !resume) throw new UsageError(`'${path}' has the work of an earlier run: --resume goes on with it, or remove ${join(path, 'work')}`);
   if (there && JSON.stringify(await folder.json('work/inputs.json')) !== key) throw new UsageError(`'${path}' has the work of other scans or options: remove ${join(path, 'work')}`);
@@ -125,11 +133,17 @@ function teller({ tasks }) {
   };
 }
 
-/** Whether an earlier run made the same of the same. @param {Folder} folder @param {TilesSaid} said */
-async function isDone(folder, { resume }) {
-  if (!(await folder.has(MANIFEST)) || !(await folder.has(TILESET)) || (await folder.has('work'))) return false;
-  if (resume) return true;
-  throw new UsageError(`'${folder.path}' has a tileset: remove it, or choose another folder`);
+/**
+ * Whether an earlier run made the same of the same.
+ * @param {Folder} folder @param {TilesSaid} said @param {Awaited<ReturnType<typeof givenOf>>} given
+ */
+async function isDone(folder, { resume, options }, given) {
+  if (!(await folder.has(MANIFEST)) || !(await folder.has(TILESET)) || (await folder.has('work/inputs.json'))) return false;
+  const made = await folder.json(MANIFEST);
+  const before = made.inputs.map((/** @type {{ name: string, bytes: number }} */ { name, bytes }) => ({ name, bytes }));
+  const same = JSON.stringify([made.options, before]) === JSON.stringify([JSON.parse(JSON.stringify(options)), given]);
+  if (resume && same) return true;
+  throw new UsageError(`'${folder.path}' has a tileset${same ? '' : ' of other scans or options'}: remove it, or choose another folder`);
 }
 
 /** @param {Folder} folder @param {TilesSaid} said */

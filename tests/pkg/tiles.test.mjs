@@ -116,7 +116,8 @@ test('a tileset is valid, in its place, and has about the points that were asked
   await good(path, 'scan', '-o', 'one', ...OPTIONS, '--jobs', '1');
   assert.deepEqual(hashes(join(path, 'one')), whole);
   assert.match((await good(path, 'scan', '-o', 'out', ...OPTIONS, '--resume')).stderr, /nothing to do/);
-  assert.match((await bad(path, 'scan', '-o', 'out', ...OPTIONS)).stderr, /has a tileset/);
+  assert.match((await bad(path, 'scan', '-o', 'out', ...OPTIONS)).stderr, /has a tileset: remove it/);
+  assert.match((await bad(path, 'scan', '-o', 'out', '--resume')).stderr, /has a tileset of other scans or options/);
 
   // What is killed at any moment goes on, and ends in the same bytes.
   for (const after of [400, 1200]) {
