@@ -3,7 +3,7 @@
 //! 1. Goal: how many points, and how close where. [`density`] asks for more of them where the surface is curved; a target
 //!    given as a `tolerance` is searched for by reducing and measuring. [`law`] is how curvature becomes spacing.
 //! 2. Clusters: centres and memberships ([`clustering::Clustering`]), by one of two methods.
-//!    - Adaptive: [`clusters`], weighted fuzzy c-means over all sub-domains without seams (eq. 1, 2 and 5); centres start by
+//!    - Adaptive (`adaptive`): [`clusters`], weighted fuzzy c-means over all sub-domains without seams (eq. 1, 2 and 5); centres start by
 //!      `farthest_first` traversal.
 //!    - Paper: [`paper`], sections 3.1 and 3.2 to the letter, with [`fcm`] in each sub-domain.
 //! 3. Placement: [`placement`] moves each centre from the mean of its members to their surface; `borders` moves those next to an
@@ -18,6 +18,7 @@
 //! **Cost**: a sweep of clustering meets each point with the centres within 1.25 wanted spacings of it; five sweeps at most by
 //! default. A tolerance takes one to five reductions, mostly.
 
+pub(crate) mod adaptive;
 pub(crate) mod borders;
 pub mod clustering;
 pub mod clusters;
@@ -35,8 +36,6 @@ pub(crate) mod surroundings;
 pub(crate) mod tolerance;
 pub(crate) mod walls;
 
-use std::ops::Range;
-
 use glam::Vec3;
 
 use crate::base::error::Result;
@@ -47,8 +46,8 @@ use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
+use crate::reduce::adaptive::{Quotas, adaptive};
 use crate::reduce::clustering::Clustering;
-use crate::reduce::clusters::{Samples, Settling};
 use crate::reduce::density::{CurvatureSpacing, Density};
 use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::law::Law;
@@ -243,15 +242,6 @@ enum Goal<'a> {
     Flatness,
 }
 
-/// How many centres start in the cells.
-#[derive(Clone, Copy)]
-enum Quotas<'a> {
-    /// So many together.
-    Total(usize),
-    /// In each as many as it deserves, rounded by the chance of its first point, given its index in the tree.
-    Local(&'a dyn Fn(usize) -> f64),
-}
-
 /// How centres are placed.
 #[derive(Clone, Copy)]
 struct Plan {
@@ -426,54 +416,4 @@ fn keep_all(tree: &Octree, features: &Features) -> (Clustering, Octree) {
         kept: n,
     };
     (clustering, Octree::build(&tree.points))
-}
-
-/// Points of a cell so that it holds about 32 centres: enough to hide the cell's border, few enough that a point meets
-/// few centres that are too far to matter.
-fn cell_points(count: usize, n: usize, params: &ReduceParams) -> usize {
-    params
-        .cell_points
-        .unwrap_or((32 * n / count).clamp(64, 512))
-}
-
-fn adaptive(
-    tree: &Octree,
-    features: &Features,
-    (quotas, density): (Quotas, Density),
-    params: &ReduceParams,
-    progress: &mut dyn Progress,
-) -> Result<(Clustering, Octree)> {
-    let count = match quotas {
-        Quotas::Total(count) => count,
-        Quotas::Local(_) => density.count(),
-    };
-    let capacity = cell_points(count, tree.points.len(), params);
-    let cells: Vec<Range<usize>> = tree.cut(|node| node.range().len() <= capacity);
-    let shares = density.shares(&cells);
-    let quotas = match quotas {
-        Quotas::Total(count) => density::quotas(&shares, &cells, count),
-        Quotas::Local(chance) => density::local_quotas(&shares, &cells, |cell| chance(cell.start)),
-    };
-    let Density { spacing, share } = density;
-    drop(share);
-    let samples = Samples {
-        tree,
-        features,
-        spacing: &spacing,
-    };
-    let settling = Settling {
-        fuzzifier: params.fuzzifier(params.method),
-        epsilon: params.epsilon(Method::Adaptive),
-        max_iterations: params.max_iterations(Method::Adaptive),
-    };
-    let clusters = clusters::cluster(samples, (&cells, &quotas), &settling, progress)?;
-    let clustering = Clustering {
-        centers: clusters.centers,
-        shares: clusters.shares,
-        spacing,
-        cells,
-        iterations: clusters.iterations,
-        kept: 0,
-    };
-    Ok((clustering, clusters.index))
 }

@@ -154,12 +154,7 @@ impl Plan {
 }
 
 /// Cuts a tile: `cells` are the counts of those in it, `depth` levels below the root.
-fn cut(
-    tile: Tile,
-    cells: Vec<Cell>,
-    (depth, most): (u32, u64),
-    leaves: &mut Vec<Leaf>,
-) {
+fn cut(tile: Tile, cells: Vec<Cell>, (depth, most): (u32, u64), leaves: &mut Vec<Leaf>) {
     let mut files: BTreeMap<usize, u64> = BTreeMap::new();
     for (file, points) in cells.iter().flat_map(|(_, files)| files) {
         *files.entry(*file).or_default() += points;
