@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import psutil
 import pytest
 from distributed import Client
 
@@ -81,5 +83,18 @@ def test_node_from_the_wheel(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_node_that_breaks_down_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "broken.mjs").write_text("throw new Error('what is wrong');")
     with pytest.raises(PointweaveError) as caught:
-        npm._run([str(tmp_path / "broken.mjs")], None)
+        npm.run_leashed([str(tmp_path / "broken.mjs")])
     assert caught.value.message == "Error: what is wrong"
+
+
+def test_node_ends_with_its_worker() -> None:
+    wait = "from pointweave_dask import npm; npm.run_leashed(['-e', 'setInterval(() => {}, 1000)'])"
+    worker = psutil.Popen([sys.executable, "-c", wait])
+    until = time.monotonic() + 20
+    while not (started := [child for child in worker.children() if "setInterval" in " ".join(child.cmdline())]):
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    worker.kill()
+    worker.wait()
+    gone, left = psutil.wait_procs(started, timeout=20)
+    assert gone and not left

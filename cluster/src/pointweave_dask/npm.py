@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -56,19 +57,29 @@ def pointweave(arguments: list[str], folder: Path | None = None) -> str:
 
     Raises `PointweaveError` with its last line where it failed.
     """
-    return _run([str(package() / "cli.js"), *arguments], folder)
+    return run_leashed([str(package() / "cli.js"), *arguments], folder)
+
+
+def run_leashed(arguments: list[str], folder: Path | None = None) -> str:
+    """Runs Node so that it ends when this process is killed: nobody else would end it."""
+    theirs, ours = os.pipe()  # theirs ends when ours is closed, by us or by the system
+    try:
+        return _run(["--import", (_HERE / "leash.mjs").as_uri(), *arguments], folder, stdin=theirs)
+    finally:
+        os.close(theirs)
+        os.close(ours)
 
 
 def ask(question: str, *values: Any) -> Any:
     """What `questions.mjs` answers: things that the npm package's own code knows best."""
     script = str(_HERE / "questions.mjs")
-    return json.loads(_run([script, str(package()), question], None, json.dumps(values)))
+    return json.loads(_run([script, str(package()), question], None, input=json.dumps(values)))
 
 
-def _run(arguments: list[str], folder: Path | None, given: str = "") -> str:
-    done = subprocess.run([node(), *arguments], cwd=folder, input=given, capture_output=True, encoding="utf-8", check=False)
+def _run(arguments: list[str], folder: Path | None, **given: Any) -> str:
+    done = subprocess.run([node(), *arguments], cwd=folder, capture_output=True, encoding="utf-8", check=False, **given)
     if done.returncode == 0:
-        return done.stdout
+        return str(done.stdout)
     raise PointweaveError(_EXIT_CODES.get(done.returncode, "killed"), _sentence(done.stderr, done.returncode))
 
 
