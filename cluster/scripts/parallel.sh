@@ -27,5 +27,7 @@ tiles_of make | each pointweave tiles make -o "$out" --tile '{}'
 for depth in $(tiles_of level | cut -d- -f1 | sort -nru); do
   tiles_of level | grep "^$depth-" | each pointweave tiles level -o "$out" --tile '{}'
 done
+# With --mesh alone there are any.
+tiles_of mesh | each pointweave tiles mesh -o "$out" --tile '{}'
 pointweave tiles finish -o "$out"
 rm -r "$out/work"

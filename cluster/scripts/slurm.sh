@@ -38,5 +38,8 @@ for depth in $(tiles_of level | cut -d- -f1 | sort -nru); do
   tiles_of level | grep "^$depth-" > "$lists/level"
   each level "pointweave tiles level -o '$out' --tile \$line"
 done
+# With --mesh alone there are any.
+tiles_of mesh > "$lists/mesh"
+[ ! -s "$lists/mesh" ] || each mesh "pointweave tiles mesh -o '$out' --tile \$line"
 pointweave tiles finish -o "$out"
 rm -r "$out/work"

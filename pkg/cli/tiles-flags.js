@@ -13,6 +13,8 @@ export const TILES_FLAGS = /** @type {const} */ ({
   spacing: { type: 'string' },
   'curvature-weight': { type: 'string' },
   attributes: { type: 'string', multiple: true },
+  mesh: { type: 'boolean' },
+  'mesh-points': { type: 'string' },
   meshopt: { type: 'boolean' },
   'tile-points': { type: 'string' },
   memory: { type: 'string' },
@@ -32,6 +34,8 @@ export const TILES_ROWS = [
   ['--spacing N', "the finest tiles' mean spacing of points, in the scan's unit"],
   ['--curvature-weight N', 'from even spacing to concentration on curved regions: 0 to 1; default: 0.5'],
   ['--attributes NAME=HOW', 'another scalar than intensity and classification that is kept, and how: mean, majority or nearest'],
+  ['--mesh', 'tiles of a mesh instead of points; needs --ratio or --count'],
+  ['--mesh-points N', 'points through which the finest mesh goes, at most; default: 1000000'],
   ['--meshopt', 'compressed tiles; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer'],
   ['--tile-points N', 'points of the scan in a tile, at most; default: 2000000'],
   ['--memory SIZE', 'how much all jobs may take together, as 2GB or 900MB; default: 2GB'],
@@ -42,13 +46,13 @@ export const TILES_ROWS = [
 
 /** Of a single step. */
 export const STEP_ROWS = [
-  ['--tile ID', "which: a tile of the plan, or of count and sort an input's number from 0"],
+  ['--tile ID', "which: a tile of the plan, of count and sort an input's number from 0, of mesh a level"],
   ['--input FILE', 'where the input of sort lies, if it is another place than it had'],
   ['--stage NAME', 'of list: whose tiles are printed, one a line'],
 ];
 
 /** The steps, in their order, and what tells of them. */
-export const STEPS = /** @type {const} */ (['count', 'plan', 'sort', 'measure', 'density', 'make', 'level', 'finish', 'list']);
+export const STEPS = /** @type {const} */ (['count', 'plan', 'sort', 'measure', 'density', 'make', 'level', 'mesh', 'finish', 'list']);
 
 /** Bytes that a job takes, and for each point of a tile: measured, `docs/tiles.md`. */
 const JOB = 250e6;
@@ -92,7 +96,7 @@ export function tilesSaid(values, positionals, { read, unit }) {
   const jobs = value('jobs', integer(1, 256), values) ?? availableParallelism();
   return {
     step, inputs, folder,
-    options: { target: targetOf(values), tilePoints, ...curvature(values), attributes: carried(values), meshopt: Boolean(values.meshopt), unit, read },
+    options: { target: targetOf(values), tilePoints, ...curvature(values), attributes: carried(values), meshopt: Boolean(values.meshopt), ...meshing(values), unit, read },
     jobs: Math.max(1, Math.min(jobs, most)),
     resume: Boolean(values.resume),
     keepWork: Boolean(values['keep-work']),
@@ -118,6 +122,14 @@ function targetOf(values) {
 function curvature(values) {
   const weight = value('curvature-weight', TABLES.reduce.curvatureWeight, values);
   return weight === undefined ? {} : { curvatureWeight: weight };
+}
+
+/** @param {Record<string, any>} values */
+function meshing(values) {
+  const points = value('mesh-points', integer(1000, 5_000_000), values);
+  if (!values.mesh && points !== undefined) throw new UsageError('--mesh-points is for --mesh');
+  if (values.mesh && values.spacing !== undefined) throw new UsageError('--mesh needs --ratio or --count, which tell how many points there will be');
+  return values.mesh ? { meshPoints: points ?? 1_000_000 } : {};
 }
 
 /** @param {{ attributes?: string[] }} values */

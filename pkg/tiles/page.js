@@ -24,8 +24,9 @@ export function pageOf({ inputs }) {
 <script type="module" src="element.min.js"></script>
 <script type="module">
   const shown = document.querySelector('output');
-  document.querySelector('point-weave').addEventListener('stream', ({ detail: { points, total, bytes } }) => {
-    shown.value = points.toLocaleString() + (total ? ' of ' + total.toLocaleString() : '') + ' points, ' + Math.round(bytes / 1e6) + ' MB';
+  document.querySelector('point-weave').addEventListener('stream', ({ detail: { points, triangles, total, bytes } }) => {
+    const what = triangles ? triangles.toLocaleString() + ' triangles' : points.toLocaleString() + (total ? ' of ' + total.toLocaleString() : '') + ' points';
+    shown.value = what + ', ' + Math.round(bytes / 1e6) + ' MB';
   });
 </script>
 </html>

@@ -2,12 +2,12 @@
 import { SCRIPTS } from './page.js';
 
 /**
- * @typedef {'sort' | 'measure' | 'density' | 'make' | 'level' | 'finish'} Stage
+ * @typedef {'sort' | 'measure' | 'density' | 'make' | 'level' | 'mesh' | 'finish'} Stage
  *
  * @typedef {object} PlannedTask
  * @property {string} id
  * @property {Stage} stage
- * @property {string} [tile] a tile as `L-X-Y-Z`, or of `sort` the input's index
+ * @property {string} [tile] a tile as `L-X-Y-Z`, or of `sort` the input's index, of `mesh` the level
  * @property {number} [input] its index, of `sort`
  * @property {string[]} needs paths in the folder
  * @property {string[]} makes paths in the folder
@@ -27,6 +27,7 @@ import { SCRIPTS } from './page.js';
  * @property {number} [curvatureWeight]
  * @property {Record<string, string>} attributes how scalars are carried, and which others than the common ones are kept
  * @property {boolean} meshopt
+ * @property {number} [meshPoints] the tiles are meshes, the finest through about so many points at most
  * @property {import('../types.js').Unit} [unit]
  * @property {Record<string, any>} read
  *
@@ -37,12 +38,14 @@ import { SCRIPTS } from './page.js';
  * @property {{ name: string, bytes: number, points: number }[]} inputs
  * @property {string[]} names of the scalars
  * @property {import('../types.js').Unit} [unit]
+ * @property {boolean} [seenFromAbove] all inputs are
  * @property {Octree} octree
+ * @property {number} [finest] the level of the finest meshes
  * @property {PlannedTask[]} tasks
  */
 
 /** The stages, in the order in which they run. @type {Stage[]} */
-export const STAGES = ['sort', 'measure', 'density', 'make', 'level', 'finish'];
+export const STAGES = ['sort', 'measure', 'density', 'make', 'level', 'mesh', 'finish'];
 
 /** Leaves that are measured, at most. */
 const SAMPLES = 256;
@@ -65,8 +68,43 @@ export const factsPath = (tile) => `work/facts/${tile}.json`;
 /** @param {string} tile */
 export const glbPath = (tile) => `points/${tile}.glb`;
 
-/** @param {Octree} octree @returns {PlannedTask[]} */
-export function tasksOf({ leaves, inner }) {
+/** What was cut of a level's mesh. @param {number | string} level */
+export const meshPath = (level) => `work/meshes/${level}.json`;
+/** @param {string} tile */
+export const meshGlbPath = (tile) => `mesh/${tile}.glb`;
+
+/** @param {Octree} octree */
+export function deepest({ leaves }) {
+  return Math.max(...leaves.map(({ tile }) => placeOf(tile).depth));
+}
+
+/**
+ * The tiles that are all of the scan on a level: those of its depth, and the leaves above.
+ * @param {Octree} octree @param {number} level
+ */
+export function cutOf(octree, level) {
+  const depth = deepest(octree) - level;
+  const inner = octree.inner.filter(({ tile }) => placeOf(tile).depth === depth);
+  const leaves = octree.leaves.filter(({ tile }) => placeOf(tile).depth <= depth);
+  return [...inner, ...leaves].map(({ tile }) => tile);
+}
+
+/**
+ * Those of {@link cutOf} whose mesh is that level's: leaves have that of the finest.
+ * @param {Octree} octree @param {number} level @param {number} finest
+ */
+export function meshedOn(octree, level, finest) {
+  const depth = deepest(octree) - level;
+  return level === finest ? cutOf(octree, level) : octree.inner.flatMap(({ tile }) => (placeOf(tile).depth === depth ? [tile] : []));
+}
+
+/**
+ * @param {Octree} octree
+ * @param {number} [finest] level of meshes
+ * @returns {PlannedTask[]}
+ */
+export function tasksOf(octree, finest) {
+  const { leaves, inner } = octree;
   const files = new Map(leaves.map((leaf) => [leaf.tile, leaf.files.map(([input]) => sortedPath(input, leaf.tile))]));
   const weights = new Map(leaves.map((leaf) => [leaf.tile, leaf.files.reduce((sum, [, points]) => sum + points, 0)]));
   /** @type {Map<number, PlannedTask>} */
@@ -84,13 +122,19 @@ export function tasksOf({ leaves, inner }) {
   const of = (/** @type {Map<string, any>} */ map, /** @type {string} */ tile) => map.get(tile) ?? [];
   /** @type {PlannedTask[]} */
   const measures = sampled.map((tile) => ({ id: `measure-${tile}`, stage: 'measure', tile, needs: [PLAN, ...of(files, tile)], makes: [samplePath(tile)], weight: weights.get(tile) }));
-  const makes = (/** @type {string} */ tile) => [madePath(tile), factsPath(tile), glbPath(tile)];
+  const makes = (/** @type {string} */ tile) => [madePath(tile), factsPath(tile), ...(finest === undefined ? [glbPath(tile)] : [])];
   /** @type {PlannedTask[]} */
   const made = leaves.map(({ tile, around }) => ({
     id: `make-${tile}`, stage: 'make', tile, needs: [PLAN, DENSITY, ...around.flatMap((other) => of(files, other))], makes: makes(tile), weight: weights.get(tile),
   }));
   /** @type {PlannedTask[]} */
   const levels = inner.map(({ tile, around }) => ({ id: `level-${tile}`, stage: 'level', tile, needs: [PLAN, DENSITY, ...around.map(madePath)], makes: makes(tile) }));
+  /** @type {PlannedTask[]} */
+  const meshes = finest === undefined ? [] : Array.from({ length: deepest(octree) - finest + 1 }, (_, i) => {
+    const level = finest + i;
+    const makes = [meshPath(level), ...meshedOn(octree, level, finest).map(meshGlbPath)];
+    return { id: `mesh-${level}`, stage: 'mesh', tile: `${level}`, needs: [PLAN, ...cutOf(octree, level).map(madePath)], makes };
+  });
   const facts = [...leaves, ...inner].map(({ tile }) => factsPath(tile));
   return [
     ...[...sorts.values()].sort((a, b) => Number(a.input) - Number(b.input)),
@@ -98,7 +142,8 @@ export function tasksOf({ leaves, inner }) {
     { id: 'density', stage: 'density', needs: [PLAN, ...sampled.map(samplePath)], makes: [DENSITY] },
     ...made,
     ...levels,
-    { id: 'finish', stage: 'finish', needs: [PLAN, DENSITY, ...facts], makes: [TILESET, PAGE, ...SCRIPTS, MANIFEST] },
+    ...meshes,
+    { id: 'finish', stage: 'finish', needs: [PLAN, DENSITY, ...facts, ...meshes.map(({ tile = '' }) => meshPath(tile))], makes: [TILESET, PAGE, ...SCRIPTS, MANIFEST] },
   ];
 }
 

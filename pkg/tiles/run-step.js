@@ -10,6 +10,7 @@ export async function runStep(folder, { stage, tile = '', input = '', read = {} 
     case 'density': return steps.density(folder);
     case 'make': return steps.make(folder, tile);
     case 'level': return steps.level(folder, tile);
+    case 'mesh': return steps.mesh(folder, Number(tile));
     case 'finish': return steps.finish(folder);
   }
 }

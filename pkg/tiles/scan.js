@@ -15,7 +15,7 @@ const HUGE = 1e30;
 
 /**
  * What only the whole file tells, as far as its points need it.
- * @typedef {Pick<Summary, 'format' | 'colorScale' | 'hasColors' | 'leftOut' | 'attributes' | 'unit' | 'up' | 'dropped'>} Told
+ * @typedef {Pick<Summary, 'format' | 'colorScale' | 'hasColors' | 'leftOut' | 'attributes' | 'unit' | 'up' | 'seenFromAbove' | 'dropped'>} Told
  */
 
 /**
@@ -40,9 +40,9 @@ export async function readScan(path, options, signal, take) {
 }
 
 /** As JSON takes it. @param {Summary} summary @returns {Told} */
-export function toldOf({ format, colorScale, hasColors, leftOut, attributes, unit, up, dropped }) {
+export function toldOf({ format, colorScale, hasColors, leftOut, attributes, unit, up, seenFromAbove, dropped }) {
   const noData = leftOut.noData.map((values) => Array.from(values));
-  return { format, colorScale, hasColors, leftOut: /** @type {any} */ ({ ...leftOut, noData, noReturns: Array.from(leftOut.noReturns) }), attributes, unit, up, dropped };
+  return { format, colorScale, hasColors, leftOut: /** @type {any} */ ({ ...leftOut, noData, noReturns: Array.from(leftOut.noReturns) }), attributes, unit, up, seenFromAbove, dropped };
 }
 
 /** Whether some of the file's points stand for none. @param {Told} told */

@@ -6,8 +6,9 @@ import { PointweaveError } from '../engine/errors.js';
 import { decode, encode, joined, selected } from './columns.js';
 import { sha256 } from './folder.js';
 import { version, withModule } from './modules.js';
+import { meshLevel } from './meshing.js';
 import { SCRIPTS, pageOf } from './page.js';
-import { DENSITY, MANIFEST, PAGE, PLAN, TILESET, countsPath, factsPath, glbPath, madePath, samplePath, sortedPath, tasksOf } from './plan.js';
+import { DENSITY, MANIFEST, PAGE, PLAN, TILESET, countsPath, cutOf, deepest, factsPath, glbPath, madePath, meshPath, samplePath, sortedPath, tasksOf } from './plan.js';
 import { columnsOf, leavesOut, positionsOf, readScan, toldOf } from './scan.js';
 import { tilesetOf } from './tileset.js';
 
@@ -70,6 +71,9 @@ export async function plan(folder, inputs, options) {
   const octree = await withModule('tiles', folder.signal, (ask) => ask({ call: 'planTiles', args: [counts, options.tilePoints] }));
   const kept = [...COMMON, ...Object.keys(options.attributes)];
   const names = kept.filter((name, i) => kept.indexOf(name) === i && counted.some(({ told }) => told.attributes.includes(name)));
+  const given = counted.reduce((sum, { points }) => sum + points, 0);
+  const finest = options.meshPoints === undefined ? undefined : finestMesh(octree, keptOf(options.target, given), options.meshPoints);
+  const seenFromAbove = counted.every(({ told }) => told.seenFromAbove);
   const units = new Set(counted.map(({ told }) => told.unit));
   const [unit] = units.size === 1 ? units : [];
   /** @type {Plan} */
@@ -80,11 +84,24 @@ export async function plan(folder, inputs, options) {
     inputs: counted.map(({ name, bytes, points }) => ({ name, bytes, points })),
     names,
     unit: options.unit ?? unit,
+    ...(seenFromAbove && { seenFromAbove }),
     octree,
-    tasks: tasksOf(octree),
+    ...(finest !== undefined && { finest }),
+    tasks: tasksOf(octree, finest),
   };
   await folder.writeJson(PLAN, made);
   return made;
+}
+
+/** Points of the finest tiles, about. @param {TileOptions['target']} target @param {number} points of the scan */
+function keptOf(target, points) {
+  return 'count' in target ? target.count : 'ratio' in target ? target.ratio * points : points;
+}
+
+/** The finest level that has no more points than that, each a quarter of those of the one below. @param {import('./plan.js').Octree} octree @param {number} points @param {number} most */
+function finestMesh(octree, points, most) {
+  const level = Math.max(0, Math.ceil(Math.log2(points / most) / 2));
+  return Math.min(level, deepest(octree));
 }
 
 /** @param {Folder} folder @returns {Promise<Plan>} */
@@ -209,13 +226,30 @@ async function reduced(folder, { octree, options, names }, { tile, level: of }, 
   /** @type {Columns} */
   const made = { names, ...result };
   const { low, high } = boxOf(made.places, octree.size);
+  const facts = { tile, level: of, points: made.places.length / 3, low, high };
+  await folder.write(madePath(tile), encode(made));
+  if (options.meshPoints !== undefined) return folder.writeJson(factsPath(tile), facts);
   const center = low.map((x, axis) => (x + high[axis]) / 2);
   const glb = await withModule('exports', folder.signal, (ask) => ask({ call: 'write', args: [cloudOf(made, octree.size, center), { format: 'glb', quantize: true }] }));
-  const compress = await compressorFor(options.meshopt);
-  const bytes = compress ? await compress(glb) : glb;
+  const bytes = await (await compressorOf(options))(glb);
   await folder.write(glbPath(tile), bytes);
-  await folder.write(madePath(tile), encode(made));
-  await folder.writeJson(factsPath(tile), { tile, level: of, points: made.places.length / 3, low, high, bytes: bytes.length, sha256: sha256(bytes) });
+  await folder.writeJson(factsPath(tile), { ...facts, uri: glbPath(tile), bytes: bytes.length, sha256: sha256(bytes) });
+}
+
+/** @param {TileOptions} options @returns {Promise<(glb: Uint8Array) => Promise<Uint8Array>>} */
+async function compressorOf({ meshopt }) {
+  return (await compressorFor(meshopt)) ?? (async (glb) => glb);
+}
+
+/**
+ * Meshes a level.
+ * @param {Folder} folder
+ * @param {number} of
+ */
+export async function mesh(folder, of) {
+  const made = await planOf(folder);
+  const blocks = await blocksOf(folder, cutOf(made.octree, of).map(madePath));
+  await meshLevel(folder, made, of, blocks, await compressorOf(made.options));
 }
 
 /**
@@ -253,17 +287,22 @@ export async function finish(folder) {
   const made = await planOf(folder);
   const { octree, inputs, options } = made;
   /** @type {import('./tileset.js').Facts[]} */
+  const reducedTiles = [];
+  for (const { tile } of [...octree.inner.toReversed(), ...octree.leaves]) reducedTiles.push(await folder.json(factsPath(tile)));
+  /** @type {import('./tileset.js').Facts[]} */
   const facts = [];
-  for (const { tile } of [...octree.inner.toReversed(), ...octree.leaves]) facts.push(await folder.json(factsPath(tile)));
+  const levels = made.tasks.filter(({ stage }) => stage === 'mesh').toReversed();
+  for (const { tile = '' } of levels) facts.push(...(await folder.json(meshPath(tile))));
+  if (levels.length === 0) facts.push(...reducedTiles);
   const measures = await folder.json(DENSITY);
   const text = new TextEncoder();
   /** @type {[string, Uint8Array][]} */
   const written = [[TILESET, text.encode(`${JSON.stringify(tilesetOf(made, facts, measures))}\n`)], [PAGE, text.encode(pageOf(made))]];
   for (const script of SCRIPTS) written.push([script, await readFile(new URL(`../${script}`, import.meta.url))]);
   for (const [name, bytes] of written) await folder.write(name, bytes);
-  const tiles = facts.map(({ tile, bytes, sha256: sum }) => [glbPath(tile), { bytes, sha256: sum }]);
+  const tiles = facts.map(({ uri, bytes, sha256: sum }) => [uri, { bytes, sha256: sum }]);
   const files = Object.fromEntries([...written.map(([name, bytes]) => [name, { bytes: bytes.length, sha256: sha256(bytes) }]), ...tiles]);
-  const leaves = facts.filter((fact) => fact.level === 0);
+  const leaves = reducedTiles.filter((fact) => fact.level === 0);
   await folder.writeJson(MANIFEST, {
     version: VERSION,
     made: made.made,
@@ -273,6 +312,7 @@ export async function finish(folder) {
     strays: octree.strays,
     reduced: leaves.reduce((sum, { points }) => sum + points, 0),
     tiles: facts.length,
+    ...(levels.length > 0 && { triangles: facts.filter(({ level }) => level === made.finest).reduce((sum, { triangles = 0 }) => sum + triangles, 0) }),
     spacing: measures.target,
     noise: measures.noise,
     files,

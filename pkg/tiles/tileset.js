@@ -1,7 +1,7 @@
 /** The tileset as 3D Tiles 1.1 (OGC 22-025r4) has it: an explicit tree in which what is nearer takes the place of what is coarser. */
-import { glbPath, parentOf } from './plan.js';
+import { parentOf } from './plan.js';
 
-/** @typedef {{ tile: string, level: number, points: number, low: number[], high: number[], bytes: number, sha256: string }} Facts */
+/** @typedef {{ tile: string, level: number, points: number, uri: string, triangles?: number, low: number[], high: number[], bytes: number, sha256: string }} Facts */
 
 /**
  * The root's cube is where the tileset begins: a transform puts it to its place in the world, in double precision. The error of a tile
@@ -10,7 +10,7 @@ import { glbPath, parentOf } from './plan.js';
  * @param {Facts[]} facts parents before children
  * @param {{ target: number }} measures
  */
-export function tilesetOf({ made, octree: { corner, size }, unit, inputs }, facts, { target }) {
+export function tilesetOf({ made, octree: { corner, size }, unit, inputs, finest = 0 }, facts, { target }) {
   const spacing = (/** @type {number} */ level) => target * 2 ** level;
   const points = inputs.reduce((sum, input) => sum + input.points, 0);
   const deepest = Math.max(...facts.map(({ level }) => level));
@@ -18,12 +18,13 @@ export function tilesetOf({ made, octree: { corner, size }, unit, inputs }, fact
   const nodes = new Map();
   /** @type {any} */
   let root;
-  for (const { tile, level, low, high, points: shown } of facts) {
+  const parents = new Set(facts.map(({ tile }) => parentOf(tile)));
+  for (const { tile, level, uri, low, high, points: shown, triangles } of facts) {
     const node = {
       boundingVolume: { box: boxOf(low, high) },
-      geometricError: level === 0 ? 0 : spacing(level),
-      content: { uri: glbPath(tile) },
-      extras: { points: shown },
+      geometricError: parents.has(tile) ? spacing(level) : 0,
+      content: { uri },
+      extras: triangles === undefined ? { points: shown } : { triangles },
     };
     nodes.set(tile, node);
     const above = nodes.get(parentOf(tile) ?? '');
@@ -37,9 +38,9 @@ export function tilesetOf({ made, octree: { corner, size }, unit, inputs }, fact
     const boxes = [node, ...(node.children ?? [])].map(({ boundingVolume: { box } }) => box);
     if (boxes.length > 1) node.boundingVolume = { box: around(boxes) };
   }
-  const shown = facts.filter(({ level }) => level === 0).reduce((sum, fact) => sum + fact.points, 0);
+  const shown = facts.filter(({ tile }) => !parents.has(tile)).reduce((sum, fact) => sum + fact.points, 0);
   return {
-    asset: { version: '1.1', extras: { pointweave: { made, points, reduced: shown, spacing: target, origin: corner, size, ...(unit && { unit }) } } },
+    asset: { version: '1.1', extras: { pointweave: { made, points, reduced: shown, spacing: target * 2 ** finest, origin: corner, size, ...(unit && { unit }) } } },
     geometricError: spacing(deepest + 1),
     root,
   };

@@ -4,7 +4,30 @@
  */
 import { BufferAttribute } from 'three';
 
-/** @import { BufferGeometry } from 'three' */
+/** @import { BufferGeometry, Material } from 'three' */
+
+/**
+ * The strip is drawn from the side to which it looks, away from the tile: from the other its edge would shine through the neighbour's.
+ * @param {Material} material of a mesh with a strip
+ */
+export function showStripsFromOutside(material) {
+  if (material.userData.strip) return;
+  material.userData.strip = true;
+  const before = material.onBeforeCompile;
+  material.customProgramCacheKey = () => `strip ${before}`;
+  material.onBeforeCompile = (shader, renderer) => {
+    before.call(material, shader, renderer);
+    shader.vertexShader = shader.vertexShader.replace('void main() {', /* glsl */ `
+      attribute float strip;
+      varying float ofStrip;
+      void main() {
+        ofStrip = strip;`);
+    shader.fragmentShader = shader.fragmentShader.replace('void main() {', /* glsl */ `
+      varying float ofStrip;
+      void main() {
+        if (ofStrip > 0.0 && !gl_FrontFacing) discard;`);
+  };
+}
 
 /**
  * Adds the strip. Takes one pass over the triangles.
@@ -35,6 +58,7 @@ export function addSkirts(geometry, depth) {
     }
     geometry.setAttribute(name, longer);
   }
+  geometry.setAttribute('strip', new BufferAttribute(new Uint8Array(count + below.size).fill(1, count), 1));
   const all = new Uint32Array(corners.length + 3 * edges.length);
   all.set(corners);
   for (let i = 0, at = corners.length; i < edges.length; i += 2, at += 6) {

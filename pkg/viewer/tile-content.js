@@ -7,7 +7,7 @@ import { frameOf, toFrame } from './frame.js';
 import { bareIn, dressMesh, dressPoints } from './glb.js';
 import { cover } from './layers.js';
 import { studioMatcap } from './matcap.js';
-import { addSkirts } from './skirts.js';
+import { addSkirts, showStripsFromOutside } from './skirts.js';
 
 /** @import { BufferAttribute, Object3D } from 'three' */
 
@@ -63,7 +63,9 @@ export function dress(scene, diagonal, said) {
       continue;
     }
     dressMesh(object, object.userData.bare === true);
-    if (said && object.geometry.index) addSkirts(object.geometry, (SKIRT * said) / object.matrixWorld.getMaxScaleOnAxis());
+    if (!said || !object.geometry.index) continue;
+    addSkirts(object.geometry, (SKIRT * said) / object.matrixWorld.getMaxScaleOnAxis());
+    [object.material].flat().forEach(showStripsFromOutside);
   }
   fadable(scene);
 }

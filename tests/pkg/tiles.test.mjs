@@ -132,6 +132,42 @@ test('a tileset is valid, in its place, and has about the points that were asked
   assert.deepEqual(hashes(join(path, 'killed')), whole);
 });
 
+test('tiles of a mesh meet in every bit', async (t) => {
+  const path = folder(t);
+  const { stdout } = await good(path, 'scan', '-o', 'mesh', '--tile-points', '9000', '--ratio', '0.1', '--mesh', '--mesh-points', '6000', '--json');
+  const { triangles } = JSON.parse(stdout);
+  const found = await validateTileset(join(path, 'mesh'));
+  assert.equal(found.leafTriangles, triangles);
+  assert.ok(found.depth > 0 && triangles > 3000, `${found.depth}, ${triangles}`);
+  const { root } = JSON.parse(readFileSync(join(path, 'mesh/tileset.json'), 'utf8'));
+  const leaves = [];
+  const walk = (node) => (node.children ? node.children.forEach(walk) : leaves.push(node));
+  walk(root);
+  /** How often each edge is passed, by the exact places of its ends. */
+  const edges = new Map();
+  const io = new WebIO();
+  for (const { content: { uri } } of leaves) {
+    const document = await io.readBinary(new Uint8Array(readFileSync(join(path, 'mesh', uri))));
+    for (const node of document.getRoot().listNodes()) {
+      const [primitive] = node.getMesh()?.listPrimitives() ?? [];
+      if (!primitive) continue;
+      const corner = node.getWorldTranslation();
+      const place = (vertex) => primitive.getAttribute('POSITION').getElement(vertex, []).map((x, axis) => x + corner[axis]).join(' ');
+      const corners = Array.from(primitive.getIndices().getArray(), place);
+      for (let i = 0; i < corners.length; i++) {
+        const edge = [corners[i], corners[i % 3 === 2 ? i - 2 : i + 1]].sort().join(', ');
+        edges.set(edge, (edges.get(edge) ?? 0) + 1);
+      }
+    }
+  }
+  assert.ok([...edges.values()].every((count) => count <= 2));
+  // What one triangle alone has is the rim of the square, and a hole or two: a cut through the middle would be as long as that again.
+  const open = [...edges].filter(([, count]) => count === 1).map(([edge]) => edge.split(', ').map((end) => end.split(' ').map(Number)));
+  const inside = ([x, , z]) => Math.min(x + root.transform[12] - ORIGIN[0], -z + root.transform[13] - ORIGIN[1]) > 5 && Math.max(x + root.transform[12] - ORIGIN[0], -z + root.transform[13] - ORIGIN[1]) < 95;
+  assert.ok(open.length > 50, `${open.length}`);
+  assert.ok(open.filter((ends) => ends.some(inside)).length < 8, `${open.filter((ends) => ends.some(inside)).length}`);
+});
+
 test('what goes wrong is said in a line, and what was done stays', async (t) => {
   const path = folder(t);
   writeFileSync(join(path, 'scan/2.laz'), halves[0].subarray(0, 3000));
@@ -147,6 +183,7 @@ test('what goes wrong is said in a line, and what was done stays', async (t) => 
     [['nothing.laz', '-o', 'x'], /'nothing\.laz': there is no such file or folder/, 2],
     [['scan', '-o', 'x', '--ratio', '0.1', '--count', '3'], /--ratio and --count exclude each other/, 2],
     [['scan', '-o', 'x', '--spacing', '0'], /--spacing is '0': expected a number in/, 2],
+    [['scan', '-o', 'x', '--mesh', '--spacing', '1'], /--mesh needs --ratio or --count/, 2],
     [['scan', '-o', 'x', '--memory', '300MB'], /--tile-points \d+ fits/, 2],
     [['scan', '-o', 'x', '--memory', 'much'], /expected a size as 2GB or 900MB/, 2],
     [['make', '-o', 'out', '--tile', '0-0-0-0'], /the step that makes it has not run/, 1],

@@ -1,4 +1,4 @@
-"""Scans of any size to a tileset: count, plan, sort, measure, density, make, level, finish.
+"""Scans of any size to a tileset: count, plan, sort, measure, density, make, level, mesh, finish.
 
 Each step is `pointweave tiles STEP` in a folder of its own. What it needs comes from the store, and what it makes goes
 there. `work/plan.json` says what needs what.
