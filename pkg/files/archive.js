@@ -83,8 +83,8 @@ function orNothing(error) {
   throw error;
 }
 
-/** @param {ByteSource} file */
-async function isArchive(file) {
+/** Whether a file is a ZIP or gzip archive; a 3MF file is one, too. @param {ByteSource} file */
+export async function isArchive(file) {
   const [a, b, c] = (await file.read(0)).subarray(0, 4);
   return (a === 0x50 && b === 0x4b && (c === 3 || c === 5)) || (a === 0x1f && b === 0x8b);
 }

@@ -2,6 +2,7 @@
 import { basename } from 'node:path';
 import { besideOf, openInput } from '../cli/files.js';
 import { PointweaveError } from '../engine/errors.js';
+import { isArchive } from '../files/archive.js';
 import { byteSourceOf } from '../files/byte-source.js';
 import { kept, leftOutOf } from '../files/left-out.js';
 import { toBytes } from '../files/point-columns.js';
@@ -27,6 +28,9 @@ const HUGE = 1e30;
  */
 export async function readScan(path, options, signal, take) {
   const file = byteSourceOf(await openInput(path, signal));
+  if (!/\.3mf$/i.test(path) && (await isArchive(file))) {
+    throw new PointweaveError({ code: 'unsupported-file', message: `${basename(path)} is an archive: tiles reads the files that are in it, once it is unpacked`, expected: 'a scan', found: 'an archive' });
+  }
   const reader = await readerOf(file, options.format);
   const helpers = { find: besideOf(path), decode: async () => undefined };
   const read = (/** @type {import('./modules.js').Ask} */ ask) => readBlocks(ask, file, { name: basename(path), ...options }, { signal }, helpers, take);

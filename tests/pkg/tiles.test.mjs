@@ -10,6 +10,7 @@ import { buffer } from 'node:stream/consumers';
 import test from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
 import { WebIO } from '@gltf-transform/core';
 import { KHRMeshQuantization } from '@gltf-transform/extensions';
 import { read, write } from 'pointweave';
@@ -178,7 +179,9 @@ test('what goes wrong is said in a line, and what was done stays', async (t) => 
   assert.equal(broken.stderr.split('\n').filter((line) => line.includes('2.laz')).length, 1);
   assert.ok(existsSync(join(path, 'out/work/counts/0.json')));
 
+  writeFileSync(join(path, 'packed.xyz.gz'), gzipSync('0 0 0\n1 1 1\n'));
   for (const [args, words, code] of [
+    [['packed.xyz.gz', '-o', 'x'], /packed\.xyz\.gz is an archive/, 1],
     [['scan'], /where should the tiles go\? -o FOLDER/, 2],
     [['nothing.laz', '-o', 'x'], /'nothing\.laz': there is no such file or folder/, 2],
     [['scan', '-o', 'x', '--ratio', '0.1', '--count', '3'], /--ratio and --count exclude each other/, 2],

@@ -142,18 +142,15 @@ fn rustdoc() -> Result<()> {
     run(&mut doc, "the docs have warnings, see above")
 }
 
-/// With threads: the feature adds tests and takes none away.
+/// The tests, and those in the docs, with threads: the feature adds tests and takes none away. Clippy has compiled the examples.
 fn native() -> Result<()> {
-    let mut tests = cargo();
-    tests.args([
-        "test",
-        "--quiet",
-        "--workspace",
-        "--no-fail-fast",
-        "--features",
-        "pointweave/threads",
-    ]);
-    run(&mut tests, "native tests failed, see above")
+    for targets in [&["--lib", "--bins", "--tests"][..], &["--doc"]] {
+        let mut tests = cargo();
+        tests.args(["test", "--quiet", "--workspace", "--no-fail-fast"]);
+        tests.args(["--features", "pointweave/threads"]);
+        run(tests.args(targets), "native tests failed, see above")?;
+    }
+    Ok(())
 }
 
 /// One file of tests/, or the unit tests of a module of src/ or of xtask.
