@@ -5,7 +5,7 @@ import { frameOf } from '../viewer/frame.js';
 import { likelyUp } from '../viewer/upright.js';
 import { direction } from '../engine/axes.js';
 import { withSaid } from './cloud-flags.js';
-import { besideOf, levelName, openInput, writeOutput } from './files.js';
+import { besideOf, levelName, openInput, writeOutput } from '../files/disk.js';
 import { doubtLines, reasonLines } from './report-text.js';
 
 /** @import { Engine, StepReport, SurfaceReport } from '../types.js' */

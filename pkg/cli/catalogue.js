@@ -1,17 +1,18 @@
 /** A folder of scans as a web page: what changed is made, what is there stays, and a scan that fails stops no other. */
 import { createHash } from 'node:crypto';
 import { createReadStream } from 'node:fs';
-import { copyFile, readFile, readdir, rm, stat } from 'node:fs/promises';
+import { copyFile, readFile, rm, stat } from 'node:fs/promises';
 import { availableParallelism } from 'node:os';
 import { basename, extname, join, relative, resolve, sep } from 'node:path';
 import { createEngine } from '../index.node.js';
 import { PointweaveError } from '../engine/errors.js';
-import { isScan } from '../files/archive.js';
 import { contactPage, indexPage } from './catalogue-page.js';
 import { DEFAULTS, make } from './catalogue-scan.js';
-import { makeFolder, sentence, writeOutput } from './files.js';
+import { makeFolder, sentence, writeOutput } from '../files/disk.js';
+import { version } from '../files/version.js';
 import { stepsOf } from './prepare-flags.js';
 import { say } from './say.js';
+import { scansAt } from './sources.js';
 import { UsageError } from './usage.js';
 
 /** @import { Task } from './arguments.js' */
@@ -135,13 +136,10 @@ async function scansIn(sources, site) {
   /** @type {Omit<Source, 'name'>[]} */
   const found = [];
   for (const source of sources) {
-    const at = await stat(source).catch(() => undefined);
-    if (!at) throw new UsageError(`'${source}': there is no such file or folder`);
-    const within = at.isDirectory() ? await readdir(source, { recursive: true, withFileTypes: true }) : [];
-    const files = within.filter((entry) => entry.isFile() && isScan(entry.name)).map(({ parentPath, path = parentPath, name }) => join(path, name));
-    const own = files.filter((file) => !resolve(file).startsWith(resolve(site) + sep)).sort();
-    for (const path of at.isDirectory() ? own : [source]) {
-      const told = at.isDirectory() ? relative(source, path) : basename(path);
+    const { isFolder, paths } = await scansAt(source);
+    for (const path of paths) {
+      if (isFolder && resolve(path).startsWith(resolve(site) + sep)) continue;
+      const told = isFolder ? relative(source, path) : basename(path);
       found.push({ path, source: told.replaceAll(sep, '/') });
     }
   }
@@ -217,8 +215,4 @@ function codeOf(error) {
 /** @param {string} text */
 function bytesOf(text) {
   return new TextEncoder().encode(text);
-}
-
-async function version() {
-  return JSON.parse(await readFile(new URL('package.json', PACKAGE), 'utf8')).version;
 }

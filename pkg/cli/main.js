@@ -1,8 +1,8 @@
 /** From the command line to the exit code: 0 done, 1 failed, 2 usage, 128 + the signal's number when interrupted. */
-import { readFile } from 'node:fs/promises';
 import { constants } from 'node:os';
 import { COMMANDS, parse } from './arguments.js';
-import { sentence } from './files.js';
+import { sentence } from '../files/disk.js';
+import { version } from '../files/version.js';
 import { help, overview } from './help.js';
 import { run } from './run.js';
 import { say } from './say.js';
@@ -51,10 +51,6 @@ function fail(error, [command], interrupted) {
 async function print(text) {
   process.stdout.write(text);
   return 0;
-}
-
-async function version() {
-  return JSON.parse(await readFile(new URL('../package.json', import.meta.url), 'utf8')).version;
 }
 
 /** Who reads the output may have enough of it, as `head` has. @param {NodeJS.ErrnoException} error */

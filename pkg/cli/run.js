@@ -4,7 +4,7 @@ import { compressorFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
-import { besideOf, checkPlace, levelName, makeFolder, openInput, sameFile, sentence, writeOutput } from './files.js';
+import { besideOf, checkPlace, levelName, makeFolder, openInput, sameFile, sentence, writeOutput } from '../files/disk.js';
 import { LIGHT } from './formats.js';
 import { say } from './say.js';
 import { bytesOf, skinOf } from './skin.js';

@@ -28,7 +28,7 @@ export const TILES_FLAGS = /** @type {const} */ ({
 
 /** For the help. */
 export const TILES_ROWS = [
-  ['-o, --out FOLDER', 'where the tileset goes: tileset.json, manifest.json and points/'],
+  ['-o, --out FOLDER', 'where the tileset goes, with a page that shows it'],
   ['--ratio N', 'about this share of the points in the finest tiles; default: 1/3'],
   ['--count N', 'about so many points in the finest tiles'],
   ['--spacing N', "the finest tiles' mean spacing of points, in the scan's unit"],

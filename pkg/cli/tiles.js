@@ -1,15 +1,15 @@
 /** A scan of any size as tiles that a page streams: all steps on this machine, or one of them for a scheduler. */
-import { readdir, stat } from 'node:fs/promises';
+import { stat } from 'node:fs/promises';
 import { basename, join } from 'node:path';
-import { isScan } from '../files/archive.js';
 import { compressorFor } from '../files/compressor.js';
 import { Folder } from '../tiles/folder.js';
 import { MANIFEST, PLAN, STAGES, TILESET, countsPath } from '../tiles/plan.js';
 import { runStep } from '../tiles/run-step.js';
 import { Workers, runAll } from '../tiles/schedule.js';
 import { plan, planOf } from '../tiles/steps.js';
-import { makeFolder, sentence } from './files.js';
+import { makeFolder, sentence } from '../files/disk.js';
 import { say } from './say.js';
+import { scansAt } from './sources.js';
 import { UsageError } from './usage.js';
 
 /** @import { Plan } from '../tiles/plan.js' */
@@ -74,7 +74,7 @@ async function planned(workers, inputs, given, { options, resume, folder: path }
   const there = await folder.has('work/inputs.json');
   if (there && !resume) throw new UsageError(`'${path}' has the work of an earlier run: --resume goes on with it, or remove ${join(path, 'work')}`);
   if (there && JSON.stringify(await folder.json('work/inputs.json')) !== key) throw new UsageError(`'${path}' has the work of other scans or options: remove ${join(path, 'work')}`);
-  await folder.writeJson('work/inputs.json', JSON.parse(key));
+  await folder.writeJson('work/inputs.json', { options, given });
   if (await folder.has(PLAN)) return planOf(folder);
   let counted = 0;
   let bad = 0;
@@ -141,7 +141,7 @@ async function isDone(folder, { resume, options }, given) {
   if (!(await folder.has(MANIFEST)) || !(await folder.has(TILESET)) || (await folder.has('work/inputs.json'))) return false;
   const made = await folder.json(MANIFEST);
   const before = made.inputs.map((/** @type {{ name: string, bytes: number }} */ { name, bytes }) => ({ name, bytes }));
-  const same = JSON.stringify([made.options, before]) === JSON.stringify([JSON.parse(JSON.stringify(options)), given]);
+  const same = JSON.stringify([made.options, before]) === JSON.stringify([options, given]);
   if (resume && same) return true;
   throw new UsageError(`'${folder.path}' has a tileset${same ? '' : ' of other scans or options'}: remove it, or choose another folder`);
 }
@@ -171,22 +171,10 @@ async function step(folder, { step: name, inputs, options, tile, input, stage })
   return runStep(folder, { stage: /** @type {any} */ (name), tile, input: path });
 }
 
-/**
- * Files, and the scans of folders; in an order that does not depend on the disk.
- * @param {string[]} sources
- */
+/** @param {string[]} sources files and folders */
 async function inputsOf(sources) {
   const inputs = [];
-  for (const source of sources) {
-    const there = await stat(source).catch(() => undefined);
-    if (!there) throw new UsageError(`'${source}': there is no such file or folder`);
-    if (!there.isDirectory()) inputs.push(source);
-    else {
-      const within = await readdir(source, { recursive: true, withFileTypes: true });
-      const scans = within.filter((entry) => entry.isFile() && isScan(entry.name)).map(({ parentPath, path = parentPath, name }) => join(path, name));
-      inputs.push(...scans.sort());
-    }
-  }
+  for (const source of sources) inputs.push(...(await scansAt(source)).paths);
   if (inputs.length === 0) throw new UsageError(`there are no scans in ${sources.join(', ')}`);
   return inputs;
 }

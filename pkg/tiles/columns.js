@@ -85,13 +85,51 @@ export function joined(blocks, names) {
  * @param {Uint32Array} indices
  * @returns {Columns}
  */
-export function selected({ places, colors, names, values }, indices) {
+export function selected({ places, ...others }, indices) {
+  return { places: triples(places, indices), ...belonging(others, indices) };
+}
+
+/**
+ * What belongs to some of the points, or to all in another order.
+ * @param {Omit<Columns, 'places'>} columns
+ * @param {Uint32Array} indices
+ */
+export function belonging({ colors, names, values }, indices) {
   return {
-    places: triples(places, indices),
     ...(colors && { colors: triples(colors, indices) }),
     names,
     values: values.map((scalars) => Float32Array.from(indices, (i) => scalars[i])),
   };
+}
+
+/**
+ * Points that follow each other.
+ * @param {Columns} columns
+ * @param {number} from
+ * @param {number} to
+ * @returns {Columns}
+ */
+export function between({ places, colors, names, values }, from, to) {
+  return {
+    places: places.subarray(3 * from, 3 * to),
+    ...(colors && { colors: colors.subarray(3 * from, 3 * to) }),
+    names,
+    values: values.map((scalars) => scalars.subarray(from, to)),
+  };
+}
+
+/**
+ * The box of places on a lattice.
+ * @param {ArrayLike<number>} places three a point, one point at least
+ * @param {number} step of the lattice
+ */
+export function boxOf(places, step) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let i = 0; i < places.length; i++) {
+    low[i % 3] = Math.min(low[i % 3], places[i]);
+    high[i % 3] = Math.max(high[i % 3], places[i]);
+  }
+  return { low: low.map((x) => x * step), high: high.map((x) => x * step) };
 }
 
 /**

@@ -2,7 +2,7 @@
 import { createHash } from 'node:crypto';
 import { mkdir, readFile, rm, stat } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
-import { writeOutput } from '../cli/files.js';
+import { writeOutput } from '../files/disk.js';
 import { PointweaveError } from '../engine/errors.js';
 
 export class Folder {
@@ -26,7 +26,8 @@ export class Folder {
   async read(name) {
     try {
       const bytes = await readFile(this.at(name), { signal: this.signal });
-      return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.length).slice();
+      // What is at no multiple of four in its buffer is moved, as numbers are read of it in place.
+      return bytes.byteOffset % 4 === 0 ? bytes : new Uint8Array(bytes);
     } catch (error) {
       this.signal.throwIfAborted();
       throw new PointweaveError({ code: 'bad-file', message: `${this.at(name)} cannot be read (${/** @type {any} */ (error).code}): the step that makes it has not run`, expected: name });

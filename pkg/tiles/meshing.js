@@ -3,7 +3,7 @@
  * a cut are equal in every bit and the tiles together are the mesh.
  */
 import { sha256 } from './folder.js';
-import { joined } from './columns.js';
+import { boxOf, joined } from './columns.js';
 import { withModule } from './modules.js';
 import { cutOf, meshGlbPath, meshPath, meshedOn, placeOf } from './plan.js';
 
@@ -37,14 +37,14 @@ export async function meshLevel(folder, plan, level, blocks, compress) {
   const step = size / LATTICE;
   const onLattice = mesh.positions.map((x) => Math.round(x / step));
   const tiles = cutOf(octree, level);
-  const owners = ownersOf(onLattice, mesh.indices, tiles);
+  const triangles = groupedBy(ownersOf(onLattice, mesh.indices, tiles), tiles.length);
   const facts = [];
   for (const tile of meshedOn(octree, level, finest)) {
-    const part = partOf(mesh, onLattice, owners, tiles.indexOf(tile));
+    const part = partOf(mesh, onLattice, triangles[tiles.indexOf(tile)]);
     const glb = part.indices.length === 0 ? emptyGlb() : await glbOf(folder, part, tile, step);
     const bytes = part.indices.length === 0 ? glb : await compress(glb);
     await folder.write(meshGlbPath(tile), bytes);
-    const { low, high } = boxOf(part.lattice, step, tile, size);
+    const { low, high } = boundsOf(part.lattice, step, tile);
     facts.push({ tile, level, uri: meshGlbPath(tile), triangles: part.indices.length / 3, points: part.lattice.length / 3, low, high, bytes: bytes.length, sha256: sha256(bytes) });
   }
   await folder.writeJson(meshPath(level), facts);
@@ -78,11 +78,22 @@ function ownersOf(lattice, indices, tiles) {
 }
 
 /**
- * The triangles of a tile, and the vertices that they use, in the mesh's order.
- * @param {Mesh} mesh @param {Float64Array} lattice @param {Uint32Array} owners @param {number} owner
+ * The triangles of each tile.
+ * @param {Uint32Array} owners @param {number} tiles
  */
-function partOf({ normals, colors, indices }, lattice, owners, owner) {
-  const corners = indices.filter((_, i) => owners[Math.floor(i / 3)] === owner);
+function groupedBy(owners, tiles) {
+  /** @type {number[][]} */
+  const groups = Array.from({ length: tiles }, () => []);
+  owners.forEach((owner, triangle) => groups[owner].push(triangle));
+  return groups;
+}
+
+/**
+ * Some triangles, and the vertices that they use, in the mesh's order.
+ * @param {Mesh} mesh @param {Float64Array} lattice @param {number[]} triangles
+ */
+function partOf({ normals, colors, indices }, lattice, triangles) {
+  const corners = Uint32Array.from({ length: 3 * triangles.length }, (_, i) => indices[3 * triangles[Math.floor(i / 3)] + (i % 3)]);
   const used = Uint32Array.from(new Set(corners)).sort();
   const renamed = new Map(Array.from(used, (vertex, i) => [vertex, i]));
   const triples = (/** @type {any} */ values) => values && values.constructor.from({ length: 3 * used.length }, (/** @type {unknown} */ _, /** @type {number} */ i) => values[3 * used[Math.floor(i / 3)] + (i % 3)]);
@@ -104,14 +115,10 @@ function emptyGlb() {
   return new Uint8Array([...new Uint8Array(head.buffer), ...json]);
 }
 
-/** The box of vertices; of none, the tile's. @param {Float64Array} lattice @param {number} step @param {string} tile @param {number} size */
-function boxOf(lattice, step, tile, size) {
+/** The box of vertices; of none, the tile's. @param {Float64Array} lattice @param {number} step @param {string} tile */
+function boundsOf(lattice, step, tile) {
+  if (lattice.length > 0) return boxOf(lattice, step);
   const { depth, at } = placeOf(tile);
-  if (lattice.length === 0) return { low: at.map((x) => (x * size) / 2 ** depth), high: at.map((x) => ((x + 1) * size) / 2 ** depth) };
-  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  lattice.forEach((x, i) => {
-    low[i % 3] = Math.min(low[i % 3], x * step);
-    high[i % 3] = Math.max(high[i % 3], x * step);
-  });
-  return { low, high };
+  const side = LATTICE / 2 ** depth;
+  return boxOf([...at, ...at.map((x) => x + 1)].map((x) => x * side), step);
 }

@@ -30,8 +30,3 @@ async function ownModule() {
   const { makeBindings } = await import('../wasm/tiles/pointweave.js');
   return [await compiled, makeBindings()];
 }
-
-/** The package's version. */
-export async function version() {
-  return JSON.parse(await readFile(new URL('../package.json', import.meta.url), 'utf8')).version;
-}

@@ -1,6 +1,6 @@
 /** The points of a file, block by block, as tiles take them. */
 import { basename } from 'node:path';
-import { besideOf, openInput } from '../cli/files.js';
+import { besideOf, openInput } from '../files/disk.js';
 import { PointweaveError } from '../engine/errors.js';
 import { isArchive } from '../files/archive.js';
 import { byteSourceOf } from '../files/byte-source.js';

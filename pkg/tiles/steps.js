@@ -2,10 +2,11 @@
 import { appendFile, mkdir, readFile, rename, stat } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { compressorFor } from '../files/compressor.js';
+import { version } from '../files/version.js';
 import { PointweaveError } from '../engine/errors.js';
-import { decode, encode, joined, selected } from './columns.js';
+import { belonging, between, boxOf, decode, encode, joined, selected } from './columns.js';
 import { sha256 } from './folder.js';
-import { version, withModule } from './modules.js';
+import { withModule } from './modules.js';
 import { meshLevel } from './meshing.js';
 import { SCRIPTS, pageOf } from './page.js';
 import { DENSITY, MANIFEST, PAGE, PLAN, TILESET, countsPath, cutOf, deepest, factsPath, glbPath, madePath, meshPath, samplePath, sortedPath, tasksOf } from './plan.js';
@@ -42,7 +43,7 @@ export async function count(folder, index, path, read) {
       return toldOf(await readScan(path, read, folder.signal, async (block) => {
         const positions = positionsOf(block, told);
         points += positions.length / 3;
-        await ask({ call: 'countPoints', args: [positions, []] });
+        await ask({ call: 'countPoints', args: [positions] });
       }));
     };
     let told = await pass();
@@ -135,14 +136,15 @@ export async function sort(folder, index, path) {
   await withModule('tiles', folder.signal, async (ask) => {
     await ask({ call: 'openLeaves', args: [octree, leaves] });
     await readScan(path, options.read, folder.signal, async (block) => {
-      const { places, order, tiles, counts } = await ask({ call: 'splitPoints', args: [positionsOf(block, told), []] });
-      const columns = columnsOf(block, told, names);
+      const { places, order, tiles, counts } = await ask({ call: 'splitPoints', args: [positionsOf(block, told)] });
+      const columns = { places, ...belonging(columnsOf(block, told, names), order) };
       let from = 0;
       tiles.forEach((/** @type {string} */ tile, /** @type {number} */ i) => {
         const to = from + counts[i];
-        const points = selected({ places: new Uint32Array(0), ...columns }, order.subarray(from, to));
-        const bytes = encode({ ...points, places: places.subarray(3 * from, 3 * to) });
-        waiting.set(tile, [...(waiting.get(tile) ?? []), bytes]);
+        const bytes = encode(between(columns, from, to));
+        const blocks = waiting.get(tile);
+        if (blocks) blocks.push(bytes);
+        else waiting.set(tile, [bytes]);
         held += bytes.length;
         from = to;
       });
@@ -225,7 +227,7 @@ async function reduced(folder, { octree, options, names }, { tile, level: of }, 
   });
   /** @type {Columns} */
   const made = { names, ...result };
-  const { low, high } = boxOf(made.places, octree.size);
+  const { low, high } = boxOf(made.places, octree.size / 2 ** 32);
   const facts = { tile, level: of, points: made.places.length / 3, low, high };
   await folder.write(madePath(tile), encode(made));
   if (options.meshPoints !== undefined) return folder.writeJson(factsPath(tile), facts);
@@ -265,18 +267,6 @@ function cloudOf({ places, colors, names, values }, size, center) {
     origin: center,
     up: [0, 0, 1],
   };
-}
-
-/** @param {Uint32Array} places @param {number} size of the root */
-function boxOf(places, size) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  places.forEach((x, i) => {
-    low[i % 3] = Math.min(low[i % 3], x);
-    high[i % 3] = Math.max(high[i % 3], x);
-  });
-  const step = size / 2 ** 32;
-  return { low: low.map((x) => x * step), high: high.map((x) => x * step) };
 }
 
 /**

@@ -192,8 +192,14 @@ impl Cloud {
             index: i / 3,
             found: positions[i].into(),
         })?;
-        Ok(Cloud {
-            points: triples(positions).map(|p| frame.to_unit(p)).collect(),
+        let points = triples(positions).map(|p| frame.to_unit(p)).collect();
+        Ok(Cloud::in_frame(points, frame))
+    }
+
+    /// Of points that are in the unit frame.
+    pub(crate) fn in_frame(points: Vec<Vec3>, frame: Frame) -> Cloud {
+        Cloud {
+            points,
             frame,
             colors: None,
             normals: None,
@@ -205,7 +211,7 @@ impl Cloud {
             unit: None,
             crs: None,
             faces: 0,
-        })
+        }
     }
 
     /// Number of points, at least 1.

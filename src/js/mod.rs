@@ -25,19 +25,9 @@ pub mod clouds;
     feature = "prepare"
 ))]
 mod crs;
-#[cfg(any(
-    feature = "engine",
-    feature = "light",
-    feature = "prepare",
-    feature = "tiles"
-))]
+#[cfg(feature = "stages")]
 mod progress;
-#[cfg(any(
-    feature = "engine",
-    feature = "light",
-    feature = "prepare",
-    feature = "tiles"
-))]
+#[cfg(feature = "stages")]
 mod values;
 #[cfg(any(
     feature = "engine",

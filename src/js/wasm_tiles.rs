@@ -50,10 +50,10 @@ extern "C" {
     fn points(this: &TileSample) -> f64;
 }
 
-/// Counts points; `origin` is added to the positions.
+/// Counts points.
 #[wasm_bindgen(js_name = countPoints)]
-pub fn count_points(positions: JsValue, origin: Vec<f64>) -> Result<(), JsValue> {
-    let points: Vec<[f64; 3]> = world(&positions, &origin).collect();
+pub fn count_points(positions: JsValue) -> Result<(), JsValue> {
+    let points: Vec<[f64; 3]> = world(&positions).collect();
     COUNTS.with_borrow_mut(|counts| counts.add(&points))?;
     Ok(())
 }
@@ -128,10 +128,10 @@ pub fn open_leaves(grid: &TileGrid, leaves: Vec<String>) -> Result<(), JsValue> 
 
 /// [`Splitter::split`] of positions: `{ places, order, tiles, counts }`.
 #[wasm_bindgen(js_name = splitPoints)]
-pub fn split_points(positions: JsValue, origin: Vec<f64>) -> JsResult {
+pub fn split_points(positions: JsValue) -> JsResult {
     let split = SPLITTER.with_borrow(|splitter| {
         let splitter = splitter.as_ref();
-        splitter.map(|splitter| splitter.split(world(&positions, &origin)))
+        splitter.map(|splitter| splitter.split(world(&positions)))
     });
     let split = split.ok_or_else(|| Error::Internal("no plan is open".into()))?;
     let tiles: Array = split
@@ -294,8 +294,7 @@ fn triples(places: &Uint32Array) -> Vec<[u32; 3]> {
 }
 
 /// Positions in the world, in double precision.
-fn world(positions: &JsValue, origin: &[f64]) -> impl Iterator<Item = [f64; 3]> {
-    let origin = [0, 1, 2].map(|axis| origin.get(axis).copied().unwrap_or_default());
+fn world(positions: &JsValue) -> impl Iterator<Item = [f64; 3]> {
     let values: Vec<f64> = match positions.dyn_ref::<Float64Array>() {
         Some(values) => values.to_vec(),
         None => {
@@ -303,5 +302,5 @@ fn world(positions: &JsValue, origin: &[f64]) -> impl Iterator<Item = [f64; 3]> 
             values.into_iter().map(f64::from).collect()
         }
     };
-    (0..values.len() / 3).map(move |i| [0, 1, 2].map(|axis| values[3 * i + axis] + origin[axis]))
+    (0..values.len() / 3).map(move |i| [0, 1, 2].map(|axis| values[3 * i + axis]))
 }

@@ -86,26 +86,15 @@ fn within(points: &Points, [low, high]: [[u64; 3]; 2]) -> Vec<u32> {
 }
 
 fn cloud_of(points: &Points, cube: Cube) -> Cloud {
+    let frame = Frame {
+        center: [0.0; 3],
+        diagonal: 1.0,
+    };
+    let inside = points.places.iter().map(|&place| cube.unit(place));
     Cloud {
-        points: points
-            .places
-            .iter()
-            .map(|&place| cube.unit(place))
-            .collect(),
-        frame: Frame {
-            center: [0.0; 3],
-            diagonal: 1.0,
-        },
         colors: points.colors.clone(),
-        normals: None,
         attributes: points.attributes.clone(),
-        origin: None,
-        viewpoints: None,
-        up: None,
-        seen_from_above: false,
-        unit: None,
-        crs: None,
-        faces: 0,
+        ..Cloud::in_frame(inside.collect(), frame)
     }
 }
 

@@ -220,7 +220,7 @@ test('what is no tileset, does not come, or needs what is not there says so', as
   site.put('/broad.json', Buffer.from('{"asset":{"version":"1.1"},"root":{"boundingVolume":{"sphere":[0,0,0,1]},"geometricError":1,"content":{"uri":"broad/large.glb"}}}'));
   for (const [url, code, words] of [
     ['/nowhere.json', 'load-failed', /404/], ['/no.json', 'bad-file', /no tileset.*JSON/], ['/other.json', 'unsupported-file', /version is 2.0/],
-    ['/rootless.json', 'bad-file', /root/], ['/placeless.json', 'bad-file', /boundingVolume/], ['/broad.json', 'load-failed', /budget/], ['/implicit.json', 'unsupported-file', /implicit/], ['/empty.json', 'load-failed', /no tile did load/],
+    ['/rootless.json', 'bad-file', /has no root/], ['/placeless.json', 'bad-file', /boundingVolume/], ['/broad.json', 'load-failed', /budget/], ['/implicit.json', 'unsupported-file', /implicit/], ['/empty.json', 'load-failed', /no tile did load/],
   ]) {
     const error = await streamed(act, url, { budget: 2 ** 20 });
     assert.equal(error?.code, code, url);

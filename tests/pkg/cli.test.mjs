@@ -12,7 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { validateBytes } from 'gltf-validator';
 import { inspect, read, reconstruct, reduce, sample, write } from 'pointweave';
 import { parse } from '../../pkg/cli/arguments.js';
-import { openInput, writeOutput } from '../../pkg/cli/files.js';
+import { openInput, writeOutput } from '../../pkg/files/disk.js';
 import { WORDS } from '../../pkg/cli/flags.js';
 import { UsageError } from '../../pkg/cli/usage.js';
 import { TARGETS } from '../../pkg/engine/options-table.js';

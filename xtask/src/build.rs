@@ -83,16 +83,7 @@ impl Build {
         match self {
             Self::Single => "engine",
             Self::Threads => "engine,threads",
-            Self::Files => "files",
-            Self::Las => "las",
-            Self::E57 => "e57",
-            Self::Pictures => "pictures",
-            Self::Exports => "exports",
-            Self::Prepare => "prepare",
-            Self::Light => "light",
-            Self::Tiles => "tiles",
-            Self::Samples => "samples",
-            Self::Packed => "packed",
+            other => other.name(),
         }
     }
 
@@ -100,17 +91,6 @@ impl Build {
     fn rust_flags(self) -> Vec<String> {
         let strings = |flags: &[&str]| flags.iter().map(|flag| flag.to_string()).collect();
         match self {
-            Self::Single
-            | Self::Files
-            | Self::Las
-            | Self::E57
-            | Self::Pictures
-            | Self::Exports
-            | Self::Samples
-            | Self::Prepare
-            | Self::Light
-            | Self::Tiles
-            | Self::Packed => strings(&["-Ctarget-feature=+simd128"]),
             Self::Threads => {
                 let mut flags: Vec<String> = strings(&[
                     "-Ctarget-feature=+atomics,+bulk-memory,+simd128",
@@ -134,6 +114,7 @@ impl Build {
                 }
                 flags
             }
+            _ => strings(&["-Ctarget-feature=+simd128"]),
         }
     }
 
