@@ -144,15 +144,16 @@ impl Build {
         root().join("target").join(format!("wasm-{threads}"))
     }
 
-    /// `cargo <action>` for this build, release profile.
-    pub fn cargo(self, toolchain: &Toolchain, action: &str) -> Command {
+    /// `cargo <action>` for this build, in a profile of Cargo.toml.
+    pub fn cargo(self, toolchain: &Toolchain, action: &str, profile: &str) -> Command {
         let mut cargo = toolchain.cargo();
         cargo
             .args([
                 action,
                 "--package",
                 "pointweave",
-                "--release",
+                "--profile",
+                profile,
                 "--target",
                 TARGET,
             ])
