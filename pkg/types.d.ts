@@ -17,8 +17,8 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   /** r g b r g b …, 0-255. */
   colors?: Uint8Array;
   /**
-   * Unit vectors x y z …; their directions are taken for the surface's, and their signs as far as they agree with each other, all of
-   * them where `orient` is false. Zero, NaN and infinite ones are none.
+   * Unit vectors x y z …; their directions count where the points are noisy and they themselves are not, and their signs as far as they
+   * agree with each other, all of them where `orient` is false. Zero, NaN and infinite ones are none.
    */
   normals?: Float32Array;
   /** One value a point: intensity, classification, time … */

@@ -6,6 +6,7 @@ use common::{Shape, points};
 use glam::{DMat3, DVec3};
 use pointweave::base::params::{Boundary, COLORS, Carry, Kernel, Propagation, Target};
 use pointweave::base::progress::Silent;
+use pointweave::base::rng::Rng;
 use pointweave::report::distance::mesh_distance;
 use pointweave::report::{area, topology, volume};
 use pointweave::samples::{Model, sample};
@@ -482,6 +483,47 @@ fn given_normals_are_used_as_they_are() {
     assert!(size(&s).0 < 0.0);
     let without = surface(&positions, &params).unwrap_err();
     assert_eq!(without.code(), "bad-option");
+}
+
+#[test]
+fn given_normals_of_any_kind_do_no_harm() {
+    for (shape, noise) in [Shape::Torus, Shape::Box]
+        .map(|s| [(s, 0.0), (s, 0.02)])
+        .concat()
+    {
+        let positions = shape.sample(8000, noise, 5);
+        let mut rng = Rng::new(6);
+        let mut of = |tilt: f64, sign: f64| {
+            let normals = points(&positions).flat_map(|p| {
+                let aside = DVec3::new(rng.normal(), rng.normal(), rng.normal());
+                let normal = shape.normal(p) + tilt * aside;
+                (sign * normal.normalize()).as_vec3().to_array()
+            });
+            normals.collect::<Vec<f32>>()
+        };
+        let error = |normals: Option<Vec<f32>>| {
+            let mut cloud = Cloud::from_f64(&positions).unwrap();
+            if let Some(normals) = normals {
+                cloud = cloud.with_normals(&normals).unwrap();
+            }
+            let s = reconstruct(&cloud, &SurfaceParams::default(), &mut Silent).unwrap();
+            let vertices = s.positions_f64();
+            let off = points(&vertices).map(|p| shape.distance(p).abs());
+            off.sum::<f64>() / s.mesh.vertices.len() as f64
+        };
+        let none = error(None);
+        for (tilt, sign) in [(0.0, 1.0), (0.0, -1.0), (0.1, -1.0), (0.3, 1.0)] {
+            let with = error(Some(of(tilt, sign)));
+            assert!(
+                with < 1.04 * none,
+                "{shape:?}, noise {noise}, tilt {tilt}, {sign}: {with} for {none}"
+            );
+        }
+        if noise > 0.0 && matches!(shape, Shape::Torus) {
+            let with = error(Some(of(0.0, 1.0)));
+            assert!(with < 0.98 * none, "{shape:?}: {with} for {none}");
+        }
+    }
 }
 
 #[test]

@@ -11,6 +11,8 @@
 //!    mean of `½ (n_i + n_j)·(x_i - x_j)` over the same neighbours: exact on every quadric, with a third of the variance that
 //!    fitting one would have, and blind to the far side of a crease. By that distance noisy points are moved.
 //!
+//! Normals that a noisy cloud has take the place of the planes' (`known`), and the first pass is done once more with them.
+//!
 //! Of rows of points far apart (`lines`) places are measured that are about as far apart in every direction.
 //!
 //! [`outliers`] finds isolated points, where the caller wants them dropped; the features of the others are then measured again.
@@ -22,6 +24,7 @@
 
 pub(crate) mod depths;
 pub(crate) mod filter;
+pub(crate) mod known;
 pub(crate) mod lines;
 pub(crate) mod noise;
 pub(crate) mod opposite;
@@ -40,6 +43,7 @@ use crate::cloud::copies::{copied, copies};
 use crate::cloud::neighborhood::CELL;
 use crate::cloud::octree::Octree;
 use crate::features::filter::{Filter, Sums};
+use crate::features::known::Normals;
 use crate::features::lines::Thinned;
 use crate::features::noise::Scales;
 use crate::features::planes::{Plane, Planes};
@@ -48,20 +52,37 @@ use std::ops::Range;
 
 pub use crate::features::values::Features;
 
+/// What is known of points before they are measured, by their places in the octree.
+pub(crate) struct Known<'a> {
+    /// From where a point was seen.
+    pub(crate) eye: &'a (dyn Fn(usize) -> Option<Vec3> + Sync),
+    /// Its normal.
+    pub(crate) normal: Option<&'a Normals<'a>>,
+}
+
 impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
-        Features::measure_seen(tree, &|_| None, progress)
+        let unknown = Known {
+            eye: &|_| None,
+            normal: None,
+        };
+        Features::measure_known(tree, &unknown, progress)
     }
 
-    /// [`Features::measure`] of points that were seen from somewhere: `eye` says from where, of a point in the octree's order.
-    pub(crate) fn measure_seen(
+    /// [`Features::measure`] of points of which more is known.
+    pub(crate) fn measure_known(
         tree: &Octree,
-        eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
+        known: &Known,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         Features::of_places(tree, progress, |places, point, progress| {
-            Features::measure_distinct(places, &|k| eye(point(k)), progress)
+            let normal = known.normal.map(|of| move |k| of(point(k)));
+            let of_places = Known {
+                eye: &|k| (known.eye)(point(k)),
+                normal: normal.as_ref().map(|of| of as &Normals),
+            };
+            Features::measure_distinct(places, &of_places, progress)
         })
     }
 
@@ -74,7 +95,7 @@ impl Features {
     ) -> Result<Features> {
         Features::of_places(tree, progress, |places, _, progress| {
             let scales = Scales::new(noise, spacing);
-            Features::measure_by(places, &scales, |_| noise, progress)
+            Features::measure_by(places, &scales, |_| noise, None, progress)
         })
     }
 
@@ -120,17 +141,19 @@ impl Features {
 
     fn measure_distinct(
         tree: &Octree,
-        eye: &(dyn Fn(usize) -> Option<Vec3> + Sync),
+        known: &Known,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
-        let steps = steps::noise(tree, eye);
+        let steps = steps::noise(tree, known.eye);
         let Some(thinned) = Thinned::of(tree) else {
-            return Features::measure_even(tree, (steps, f32::INFINITY), progress);
+            let limits = (steps, f32::INFINITY);
+            return Features::measure_even(tree, limits, known.normal, progress);
         };
         let places = Octree::build(&thinned.places);
         let noise = lines::noise(tree);
         let most = thinned.noise_of_places(noise).max(steps);
-        let of_places = Features::measure_even(&places, (steps, most), progress)?;
+        let limits = (steps, most);
+        let of_places = Features::measure_even(&places, limits, None, progress)?;
         Ok(thinned.features((tree, noise), (&places, &of_places)))
     }
 
@@ -138,11 +161,12 @@ impl Features {
     fn measure_even(
         tree: &Octree,
         (steps, most): (f32, f32),
+        known: Option<&Normals>,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         let scales = Scales::measure(tree).at_most(most).at_least(steps);
         let noise = |normals: &[Vec3]| noise::within_sheets(tree, normals, &scales).max(steps);
-        let features = Features::measure_by(tree, &scales, noise, progress)?;
+        let features = Features::measure_by(tree, &scales, noise, known, progress)?;
         Ok(Features { steps, ..features })
     }
 
@@ -151,6 +175,7 @@ impl Features {
         tree: &Octree,
         scales: &Scales,
         noise: impl FnOnce(&[Vec3]) -> f32,
+        known: Option<&Normals>,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         let cells = tree.cut(|node| node.range().len() <= CELL);
@@ -176,10 +201,20 @@ impl Features {
         };
         drop(planes);
         features.noise = noise(&features.normals);
-        let (early, late) = (0.4..0.7, 0.7..1.0);
-        features.normals = features.pass(tree, &cells, (progress, early), |sums, denoise| {
-            sums.normals(denoise)
-        })?;
+        let (first, second, late) = (0.4..0.55, 0.55..0.7, 0.7..1.0);
+        let smooth = |features: &Features, progress: &mut dyn Progress, range| {
+            features.pass(tree, &cells, (progress, range), |sums, denoise| {
+                sums.normals(denoise)
+            })
+        };
+        let mut filtered = smooth(&features, progress, first)?;
+        let share = known.map_or(0.0, |of| known::share(&filtered, of, scales.denoise));
+        if let Some(of) = known.filter(|_| share > 0.0) {
+            known::instead(&mut features.normals, &filtered, of);
+            let told = smooth(&features, progress, second)?;
+            known::join(&mut filtered, &told, share);
+        }
+        features.normals = filtered;
         let offsets = features.pass(tree, &cells, (progress, late), |sums, denoise| {
             sums.offsets(denoise)
         })?;

@@ -11,6 +11,7 @@
 //!
 //! **Cost**: linear in the triangles, about 15 sums over the neighbours of each.
 
+use crate::base::groups::Groups;
 use crate::base::par;
 use crate::mesh::collapse::{VertexTriangles, vertex_triangles};
 use crate::mesh::surface::Mesh;
@@ -49,7 +50,7 @@ pub(crate) fn fair(mesh: &mut Mesh, noise: f32) {
     let most = |&t: &u32| (MOST_MOVED * noise).min(ASIDE * filter.scales[t as usize]);
     let reach = |v| around.of(v).iter().map(most).fold(f32::INFINITY, f32::min);
     let limits: Vec<f32> = (0..mesh.vertices.len() as u32).map(reach).collect();
-    let areas = filter.areas;
+    let areas: Vec<f32> = filter.triangles.iter().map(|t| t.area).collect();
     mesh.vertices = moved(mesh, &around, &normals, &limits);
     mesh.normals = par::map(
         mesh.vertices.len(),
@@ -67,45 +68,53 @@ fn mean(values: &[f32]) -> f32 {
     (sum / values.len().max(1) as f64) as f32
 }
 
+/// What a triangle's neighbours ask of it, side by side in memory.
+struct Triangle {
+    center: Vec3,
+    /// Twice its area.
+    area: f32,
+}
+
 /// What the filter knows of every triangle.
-struct Filter<'a> {
-    mesh: &'a Mesh,
-    around: &'a VertexTriangles,
-    centers: Vec<Vec3>,
-    /// Twice the areas.
-    areas: Vec<f32>,
+struct Filter {
+    triangles: Vec<Triangle>,
     normals: Vec<Vec3>,
+    /// The triangles with a common vertex, those with a common edge twice.
+    others: Groups<u32>,
     /// Mean distance to the triangles around it.
     scales: Vec<f32>,
 }
 
-impl Filter<'_> {
-    fn new<'a>(mesh: &'a Mesh, around: &'a VertexTriangles) -> Filter<'a> {
+impl Filter {
+    fn new(mesh: &Mesh, around: &VertexTriangles) -> Filter {
         let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices[v as usize]);
-        let triangles = || mesh.triangles.iter().map(corners);
-        let crosses: Vec<Vec3> = triangles().map(|[a, b, c]| (b - a).cross(c - a)).collect();
+        let cross = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a);
+        let triangle = |[a, b, c]: [Vec3; 3]| Triangle {
+            center: (a + b + c) / 3.0,
+            area: cross([a, b, c]).length(),
+        };
+        let all = || mesh.triangles.iter().map(corners);
+        let pairs = || {
+            mesh.triangles.iter().zip(0u32..).flat_map(|(corners, t)| {
+                let near = corners.iter().flat_map(|&v| around.of(v));
+                near.filter(move |&&other| other != t)
+                    .map(move |&other| (t, other))
+            })
+        };
         let mut filter = Filter {
-            mesh,
-            around,
-            centers: triangles().map(|[a, b, c]| (a + b + c) / 3.0).collect(),
-            areas: crosses.iter().map(|cross| cross.length()).collect(),
-            normals: crosses
-                .iter()
-                .map(|cross| cross.normalize_or_zero())
-                .collect(),
+            triangles: all().map(triangle).collect(),
+            normals: all().map(|t| cross(t).normalize_or_zero()).collect(),
+            others: Groups::new(mesh.triangles.len(), pairs),
             scales: Vec::new(),
         };
-        filter.scales = filter.means(|t, other| filter.centers[t].distance(filter.centers[other]));
+        let center = |t: usize| filter.triangles[t].center;
+        filter.scales = filter.means(|t, other| center(t).distance(center(other)));
         filter
     }
 
-    /// The triangles with a common vertex, those with a common edge twice.
+    /// The triangles around one.
     fn others(&self, t: usize) -> impl Iterator<Item = usize> {
-        let vertices = self.mesh.triangles[t].into_iter();
-        let triangles = vertices.flat_map(|v| self.around.of(v));
-        triangles
-            .map(|&other| other as usize)
-            .filter(move |&other| other != t)
+        self.others.of(t as u32).iter().map(|&other| other as usize)
     }
 
     /// The mean of what `of` says of each triangle and those around it.
@@ -114,9 +123,8 @@ impl Filter<'_> {
             self.normals.len(),
             || (),
             |t, ()| {
-                let sum = |(sum, n), other| (sum + of(t, other), n + 1.0);
-                let (sum, n) = self.others(t).fold((0.0, 0.0), sum);
-                sum / f32::max(n, 1.0)
+                let sum: f32 = self.others(t).map(|other| of(t, other)).sum();
+                sum / (self.others.of(t as u32).len() as f32).max(1.0)
             },
         )
     }
@@ -158,15 +166,13 @@ impl Filter<'_> {
         t: usize,
         normals: &'a [Vec3],
     ) -> impl Iterator<Item = (f32, usize)> + 'a {
-        let (center, normal) = (self.centers[t], normals[t]);
+        let (center, normal) = (self.triangles[t].center, normals[t]);
         let nearness = 1.0 / (REACH * self.scales[t]).powi(2);
-        self.others(t).map(move |other| {
-            let near = 1.0 - center.distance_squared(self.centers[other]) * nearness;
-            let alike = 1.0 - normal.distance_squared(normals[other]) * ALIKE;
-            (
-                self.areas[other] * (near.max(0.0) * alike.max(0.0)).powi(2),
-                other,
-            )
+        self.others(t).map(move |k| {
+            let other = &self.triangles[k];
+            let near = 1.0 - center.distance_squared(other.center) * nearness;
+            let alike = 1.0 - normal.distance_squared(normals[k]) * ALIKE;
+            (other.area * (near.max(0.0) * alike.max(0.0)).powi(2), k)
         })
     }
 

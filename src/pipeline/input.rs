@@ -5,20 +5,17 @@ use crate::base::params::{COLORS, Outliers, ReduceParams};
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
-use crate::features::Features;
 use crate::features::outliers;
+use crate::features::{Features, Known};
 use crate::reduce::Reduced;
 use glam::Vec3;
 use std::borrow::Cow;
 
-/// Cosine of the largest angle between a normal of the cloud and the measured one: 60°.
-const ACROSS: f32 = 0.5;
 /// Length of the mean direction from which on points are all on one side: those of half a ball have 0.5, of a picture 60° to
 /// either side wide 0.75.
 const AHEAD: f32 = 0.7;
 
-/// The octree and the features of a cloud; where the cloud has normals of its own they are taken for the measured ones,
-/// as a scanner knows more than neighbours tell.
+/// The octree and the features of a cloud. Normals that it has help where it is noisy, and tell the side of all.
 pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Octree, Features)> {
     progress.update(Stage::Octree, 0.0)?;
     let tree = Octree::build(&cloud.points);
@@ -37,17 +34,22 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
         }
         None => ahead.then_some(origin),
     };
-    let mut features = Features::measure_seen(&tree, &eye, progress)?;
-    if let Some(normals) = &cloud.normals {
-        for (normal, &i) in features.normals.iter_mut().zip(&tree.order) {
-            let own = normals[i as usize];
-            let along = own.dot(*normal);
-            // What stands across the surface is no normal of it; only its sign may be one.
-            if *normal == Vec3::ZERO || along.abs() > ACROSS {
-                *normal = if own == Vec3::ZERO { *normal } else { own };
-            } else if along < 0.0 {
-                *normal = -*normal;
-            }
+    let own = |i: usize| match &cloud.normals {
+        Some(normals) => normals[tree.order[i] as usize],
+        None => Vec3::ZERO,
+    };
+    let known = Known {
+        eye: &eye,
+        normal: cloud.normals.is_some().then_some(&own),
+    };
+    let mut features = Features::measure_known(&tree, &known, progress)?;
+    let measured = features.normals.iter_mut().zip(&mut features.residual);
+    for (i, (normal, residual)) in measured.enumerate() {
+        if *normal == Vec3::ZERO {
+            *normal = own(i);
+        } else if own(i).dot(*normal) < 0.0 {
+            *normal = -*normal;
+            *residual = -*residual;
         }
     }
     Ok((tree, features))

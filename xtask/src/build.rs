@@ -144,15 +144,16 @@ impl Build {
         root().join("target").join(format!("wasm-{threads}"))
     }
 
-    /// `cargo <action>` for this build, release profile.
-    pub fn cargo(self, toolchain: &Toolchain, action: &str) -> Command {
+    /// `cargo <action>` for this build, in a profile of Cargo.toml.
+    pub fn cargo(self, toolchain: &Toolchain, action: &str, profile: &str) -> Command {
         let mut cargo = toolchain.cargo();
         cargo
             .args([
                 action,
                 "--package",
                 "pointweave",
-                "--release",
+                "--profile",
+                profile,
                 "--target",
                 TARGET,
             ])
@@ -275,9 +276,12 @@ impl Builder {
     fn compile(&self, build: Build) -> Result<Option<PathBuf>> {
         run(
             // The library for other crates, which the manifest names too, would cost as much again.
-            build
-                .cargo(&self.toolchain, "rustc")
-                .args(["--quiet", "--lib", "--crate-type", "cdylib"]),
+            build.cargo(&self.toolchain, "rustc").args([
+                "--quiet",
+                "--lib",
+                "--crate-type",
+                "cdylib",
+            ]),
             "the wasm build failed; its errors are above",
         )?;
         let wasm = build

@@ -234,7 +234,7 @@ fn wasm_file(file: &str, name: Option<&str>) -> Result<()> {
 }
 
 fn wasm_tests(build: Build, toolchain: &Toolchain, runner: &Path) -> Command {
-    let mut tests = build.cargo(toolchain, "test");
+    let mut tests = build.cargo(toolchain, "test", "wasm-test");
     // Files of both kinds are read and written, which the engine does not.
     tests.args(["--features", "files,packed"]);
     // By name: documentation tests would take rustdoc from PATH, and it is another compiler's.
