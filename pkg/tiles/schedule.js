@@ -7,7 +7,7 @@ import { PointweaveError } from '../engine/errors.js';
 
 /**
  * What a worker is asked to do: a stage, and of `count` and `sort` where the input lies.
- * @typedef {{ stage: import('./plan.js').Stage | 'count', tile?: string, input?: string, read?: Record<string, any> }} Work
+ * @typedef {{ stage: import('./plan.js').Stage | 'count', tile?: string, input?: string, read?: Record<string, any>, part?: import('./parts.js').Part }} Work
  */
 
 /** Does one thing at a time; each of them ends with it. */
@@ -17,10 +17,11 @@ export class Workers {
   /** @type {Set<Worker>} */
   #all = new Set();
 
-  /** @param {Folder} folder @param {number} most */
-  constructor(folder, most) {
+  /** @param {Folder} folder @param {number} most @param {{ memory: number, costOf: (stage: string) => number }} room bytes that all may take together, and a task of each stage */
+  constructor(folder, most, room) {
     this.folder = folder;
     this.most = most;
+    this.room = room;
   }
 
   /** @param {Work} work @returns {Promise<void>} */
@@ -80,6 +81,8 @@ export async function runAll(workers, tasks, inputs, tell) {
   const waiting = [...missing];
   /** @type {Set<Promise<void>>} */
   const running = new Set();
+  const { memory, costOf } = workers.room;
+  let taken = 0;
   let done = 0;
   /** @type {unknown} */
   let failed;
@@ -94,11 +97,16 @@ export async function runAll(workers, tasks, inputs, tell) {
       },
       (error) => void (failed ??= { error }),
     );
-    const ended = work.finally(() => running.delete(ended));
+    taken += costOf(stage);
+    const ended = work.finally(() => {
+      taken -= costOf(stage);
+      running.delete(ended);
+    });
     running.add(ended);
   };
   while (!failed && (waiting.length > 0 || running.size > 0)) {
-    for (let task; !failed && running.size < workers.most && (task = waiting.find(({ needs }) => needs.every((name) => there.has(name)))); ) start(task);
+    const mayRun = (/** @type {PlannedTask} */ { stage, needs }) => taken + costOf(stage) <= memory && needs.every((name) => there.has(name));
+    for (let task; !failed && running.size < workers.most && (task = waiting.find(mayRun)); ) start(task);
     if (running.size === 0) throw new PointweaveError({ code: 'internal', message: `nothing makes what ${waiting[0].id} needs` });
     await Promise.race(running);
   }

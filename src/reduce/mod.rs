@@ -37,6 +37,7 @@ pub(crate) mod tolerance;
 pub(crate) mod walls;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::base::error::Result;
 use crate::base::par;
@@ -109,8 +110,19 @@ pub(crate) struct Whole<'a> {
     pub(crate) law: Law,
     /// Reduced points that the law's spacing stands for, where it says 1.
     pub(crate) scale: f64,
+    /// How thin walls are kept apart, where there are some.
+    pub(crate) walls: Option<WallShare>,
     /// Even in 0..1, of a point by its index in the cloud: the same whatever part it is in.
     pub(crate) chance: &'a dyn Fn(u32) -> f64,
+}
+
+/// What the thin walls of a scan get.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct WallShare {
+    /// The scale of what the other parts get, in place of the whole's.
+    pub scale: f64,
+    /// Which part of what walls ask for beyond that they get.
+    pub allowed: f64,
 }
 
 /// [`reduce`] of a part of a scan: the target is the `whole`'s, and so that sub-domains do not depend on the part, the parameters say
@@ -152,7 +164,7 @@ fn run(
     let (goal, reason) = match whole {
         None => job.goal(progress)?,
         Some(whole) => {
-            let density = Density::of_part(at, &job.features, &whole.law, whole.scale);
+            let density = Density::of_part(at, &job.features, whole);
             (
                 Goal::Density(Quotas::Local(&chance), density),
                 String::new(),
@@ -306,7 +318,9 @@ impl Job<'_> {
             }
         };
         let n = self.tree.points.len();
-        let chord = tolerance::search(&self.features, tolerance, progress, |chord, progress| {
+        let noise = tolerance::removed_noise(&self.features);
+        let known = (noise, tolerance);
+        let chord = tolerance::search(known, progress, |chord, progress| {
             let goal = goal(chord);
             let plan = self.plan(&goal);
             let (clustering, index) = self.cluster(goal, progress)?;
@@ -320,7 +334,9 @@ impl Job<'_> {
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
             let denoised = |k| self.features.denoised(self.tree, k);
-            cloud_distances(denoised, &clustering.shares, &patches, progress).map(Some)
+            let distances = cloud_distances(denoised, &clustering.shares, &patches, progress)?;
+            let area = |i: u32| f64::from(self.features.spacing[i as usize]).powi(2);
+            Ok(Some(tolerance::error(distances, area)))
         })?;
         Ok(goal(chord))
     }
