@@ -35,7 +35,7 @@ fn tiles_have_the_points_of_one_piece() {
     assert_eq!((whole.leaves.len(), whole.grid), (1, parts.grid));
     assert!(parts.leaves.len() > 7);
     let leaves = sorted(&points, &parts);
-    let measures = measured(&parts, &leaves, (Aim::Ratio(0.1), 500));
+    let measures = measured(&parts, &leaves, (Aim::Ratio(0.1), (4, 500)));
     assert!((measures.noise - 1e-3).abs() < 2e-4, "{}", measures.noise);
     let one = &made(&whole, &sorted(&points, &whole), &measures)[&Tile::ROOT];
     let tiles = made(&parts, &leaves, &measures);
@@ -90,7 +90,7 @@ fn colours_and_scalars_go_along() {
     let measures = measured(
         &plan,
         &BTreeMap::from([(Tile::ROOT, leaf.clone())]),
-        (Aim::Count(500.0), 500),
+        (Aim::Count(500.0), (4, 500)),
     );
     let options = ReduceParams {
         attributes: BTreeMap::from([("class".into(), Carry::Majority)]),
@@ -120,7 +120,7 @@ fn a_few_points_are_a_tile() {
         let points: Vec<[f64; 3]> = (0..count).map(|i| [0.5 * f64::from(i), 0.0, 1e3]).collect();
         let plan = planned(&points, 1000);
         let leaves = sorted(&points, &plan);
-        let measures = measured(&plan, &leaves, (Aim::Ratio(0.3), 500));
+        let measures = measured(&plan, &leaves, (Aim::Ratio(0.3), (4, 500)));
         let tiles = made(&plan, &leaves, &measures);
         let reduced = joined(tiles.values()).places.len();
         assert!(

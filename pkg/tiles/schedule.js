@@ -1,6 +1,7 @@
 /** All tasks of a plan on this machine, as many at a time as there are workers. */
 import { Worker } from 'node:worker_threads';
 import { PointweaveError } from '../engine/errors.js';
+import { STAGES } from './plan.js';
 
 /** @import { Folder } from './folder.js' */
 /** @import { PlannedTask } from './plan.js' */
@@ -78,7 +79,9 @@ export async function runAll(workers, tasks, inputs, tell) {
   for (const name of new Set(tasks.flatMap(({ needs, makes }) => [...needs, ...makes]))) if (await folder.has(name)) there.add(name);
   const missing = tasks.filter(({ makes }) => !makes.every((name) => there.has(name)));
   for (const { makes } of missing) for (const name of makes) there.delete(name);
-  const waiting = [...missing];
+  // Of a stage the heaviest first: no large one is left to the end, when all others are done.
+  const order = (/** @type {PlannedTask} */ { stage }) => STAGES.indexOf(stage);
+  const waiting = missing.toSorted((a, b) => order(a) - order(b) || (b.weight ?? 0) - (a.weight ?? 0));
   /** @type {Set<Promise<void>>} */
   const running = new Set();
   const { memory, costOf } = workers.room;

@@ -69,11 +69,8 @@ pub struct LineMeasures {
 /// What a tile is reduced by; lengths in the caller's unit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rule {
-    noise: f64,
-    steps: f64,
-    /// Median spacing of what is reduced.
-    median: f64,
-    lines: Option<LineMeasures>,
+    /// Of what is reduced.
+    pub(super) surface: Surface,
     pub(super) law: Law,
     pub(super) scale: f64,
     pub(super) walls: Option<WallShare>,
@@ -104,11 +101,13 @@ impl Measures {
         };
         let given_wide = if level == 0 { given } else { wide * given };
         Rule {
-            // A reduced point is the mean of those that it stands for, but all of them may be rounded alike.
-            noise: (self.noise / coarser).max(self.steps),
-            steps: self.steps,
-            median: self.median * coarser,
-            lines: self.lines.filter(|_| level == 0),
+            surface: Surface {
+                // A reduced point is the mean of those that it stands for, but all of them may be rounded alike.
+                noise: (self.noise / coarser).max(self.steps),
+                steps: self.steps,
+                median: self.median * coarser,
+                lines: self.lines.filter(|_| level == 0),
+            },
             law: self.law.with_groups(coarser),
             scale: self.scale * (coarser * self.target / made).powi(2),
             walls: self.walls.filter(|_| level == 0),
@@ -119,7 +118,17 @@ impl Measures {
     }
 }
 
-impl Rule {
+/// What is known of points before they are measured; lengths in the caller's unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surface {
+    pub(super) noise: f64,
+    pub(super) steps: f64,
+    /// Median spacing.
+    pub(super) median: f64,
+    pub(super) lines: Option<LineMeasures>,
+}
+
+impl Surface {
     /// In a frame in which the caller's unit is 1/`side`.
     pub(super) fn known(&self, side: f64) -> Known {
         let of = |length: f64| (length / side) as f32;

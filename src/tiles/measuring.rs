@@ -8,13 +8,13 @@
 use crate::base::error::{Error, Result};
 use crate::base::progress::Progress;
 use crate::cloud::octree::Octree;
-use crate::features::lines::{self, Lines, Thinned};
+use crate::features::Features;
+use crate::features::lines::{self, Thinned};
 use crate::features::noise::Scales;
-use crate::features::{Features, Known};
 use crate::reduce::law::{Law, Patch};
 use crate::reduce::{WallShare, density, walls};
 use crate::tiles::grid::{Cube, Grid};
-use crate::tiles::measures::{Aim, LineMeasures, Measures};
+use crate::tiles::measures::{Aim, LineMeasures, Measures, Surface};
 use crate::tiles::samples::Sample;
 use crate::tiles::tolerance;
 use glam::Vec3;
@@ -36,9 +36,9 @@ pub fn measure(
     if measured.is_empty() {
         return Err(Error::EmptyCloud);
     }
-    let known = Common::of(&measured);
+    let surface = Surface::of(&measured);
     for m in &mut measured {
-        m.features = Features::measure_part(&m.tree, &known.in_frame(m.side), progress)?;
+        m.features = Features::measure_part(&m.tree, &surface.known(m.side), progress)?;
     }
     let total: f64 = samples.iter().map(|sample| sample.points).sum();
     let patches: Vec<Patch> = measured.iter().flat_map(Measured::patches).collect();
@@ -50,12 +50,12 @@ pub fn measure(
         Aim::Tolerance(_) => total,
     };
     let whole = Measures {
-        noise: known.noise,
-        steps: known.steps,
-        median: known.median,
+        noise: surface.noise,
+        steps: surface.steps,
+        median: surface.median,
         spacing: (area / total).sqrt(),
         target: (area / count.clamp(1.0, total)).sqrt(),
-        lines: known.lines,
+        lines: surface.lines,
         law: Law::of(&patches, curvature_weight),
         scale: 1.0,
         walls: None,
@@ -197,17 +197,9 @@ impl Measured<'_> {
     }
 }
 
-/// What most of the scan has, in the caller's unit.
-struct Common {
-    noise: f64,
-    steps: f64,
-    median: f64,
-    lines: Option<LineMeasures>,
-}
-
-impl Common {
-    /// Of samples that are measured each for itself.
-    fn of(measured: &[Measured]) -> Common {
+impl Surface {
+    /// What most of the scan has, by samples that are measured each for itself.
+    fn of(measured: &[Measured]) -> Surface {
         let median_of = |value: &dyn Fn(&Measured) -> f64| median_of(measured, value);
         let steps = median_of(&|m| f64::from(m.features.steps) * m.side);
         let total: f64 = measured.iter().map(Measured::points).sum();
@@ -217,7 +209,7 @@ impl Common {
         });
         let share = share.sum::<f64>() / total;
         if !lines::are_there(share as f32, 1.0) {
-            return Common {
+            return Surface {
                 noise: median_of(&|m| f64::from(m.features.noise) * m.side),
                 steps,
                 median: median_of(&|m| f64::from(m.features.median_spacing()) * m.side),
@@ -240,7 +232,7 @@ impl Common {
             let values: Vec<f64> = thinned.iter().map(value).collect();
             weighted_median(values.iter().zip(measured).map(|(&v, m)| (v, m.points())))
         };
-        Common {
+        Surface {
             noise,
             steps,
             median: median(|&(_, apart, points)| apart / points.sqrt()),
@@ -248,19 +240,6 @@ impl Common {
                 noise: median(|t| t.0).max(steps),
                 spacing: median(|t| t.1),
                 share,
-            }),
-        }
-    }
-
-    fn in_frame(&self, side: f64) -> Known {
-        let of = |length: f64| (length / side) as f32;
-        Known {
-            noise: of(self.noise),
-            steps: of(self.steps),
-            spacing: of(self.median),
-            lines: self.lines.map(|lines| Lines {
-                places: (of(lines.noise), of(lines.spacing)),
-                share: lines.share as f32,
             }),
         }
     }

@@ -35,7 +35,7 @@ pub fn reduce(
     // The caller's unit of the unit frame's 1.
     let side = cube.side() * grid.step();
     progress.update(Stage::Octree, 0.0)?;
-    let known = rule.known(side);
+    let known = rule.surface.known(side);
     let points = match options.outliers {
         Outliers::Drop if level == 0 => without_strays(&given, cube, &known, progress)?,
         _ => given.clone(),

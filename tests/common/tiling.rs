@@ -46,18 +46,18 @@ pub fn planned(points: &[[f64; 3]], most: u64) -> Plan {
     Plan::new(&[counts], most).unwrap()
 }
 
-/// By four samples of so many points of each leaf.
+/// By so many samples of so many points of each leaf.
 pub fn measured(
     plan: &Plan,
     leaves: &BTreeMap<Tile, Points>,
-    (aim, sampled): (Aim, usize),
+    (aim, samples_of): (Aim, (usize, usize)),
 ) -> Measures {
     let samples: Vec<Sample> = leaves
         .iter()
         .flat_map(|(&tile, own)| {
             let around = plan.around_leaf(tile);
             let points = joined(around.iter().filter_map(|tile| leaves.get(tile)));
-            let groups = samples::samples(tile, &points.places, (4, sampled));
+            let groups = samples::samples(tile, &points.places, samples_of);
             let each = own.places.len() as f64 / groups.len() as f64;
             groups.into_iter().map(move |(indices, range)| Sample {
                 places: points.select(&indices).places,
