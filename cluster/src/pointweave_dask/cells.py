@@ -37,7 +37,7 @@ def sampled(tile: str) -> Box:
 
 
 def copy_cells(read: Read, size: int, tile: str, box: Box, local: Path) -> int:
-    """Copies those blocks of a leaf's file that meet a box, and its index, to their places in a local file; how many bytes they were."""
+    """Copies the blocks of a leaf's file that meet a box, and its index, to their places in a local file; how many bytes."""
     start = max(0, size - _TAIL)
     tail = read(start, size)
     length = int.from_bytes(tail[-4:], "little")
