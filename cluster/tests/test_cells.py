@@ -13,9 +13,9 @@ from pointweave_dask.cells import copy_cells, surroundings
 def sorted_file(folder: Path) -> tuple[Path, str]:
     """The largest file of sorted points of a flat scan."""
     chance = random.Random(2)
-    lines = [f"{8 * chance.random():.4f} {8 * chance.random():.4f} 0" for _ in range(60_000)]
+    lines = [f"{8 * chance.random():.4f} {8 * chance.random():.4f} 0" for _ in range(160_000)]
     (folder / "flat.xyz").write_text("\n".join(lines) + "\n")
-    npm.pointweave(["tiles", "plan", "flat.xyz", "-o", "out", "--tile-points", "40000"], folder)
+    npm.pointweave(["tiles", "plan", "flat.xyz", "-o", "out", "--tile-points", "100000"], folder)
     npm.pointweave(["tiles", "sort", "-o", "out", "--tile", "0"], folder)
     largest = max((folder / "out/work/sorted/0").iterdir(), key=lambda path: path.stat().st_size)
     return largest, largest.stem
