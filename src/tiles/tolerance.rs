@@ -1,5 +1,5 @@
 //! A tolerance as the target: the samples are reduced as tiles would be, and the chord is scaled until 99 % of their surface are just
-//! within the tolerance, as [`crate::reduce`] does it of a whole scan.
+//! within the tolerance, as [`mod@crate::reduce`] does it of a whole scan.
 
 use crate::base::error::Result;
 use crate::base::params::ReduceParams;
