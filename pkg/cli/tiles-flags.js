@@ -62,7 +62,7 @@ export const STEPS = /** @type {const} */ (['count', 'plan', 'sort', 'measure', 
 const JOB = 250e6;
 const POINT = 330;
 /** For each point of a mesh. */
-const MESH_POINT = 1400;
+const MESH_POINT = 1500;
 
 /**
  * @typedef {object} TilesSaid

@@ -20,7 +20,7 @@ use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
 use crate::reduce::law::{Law, Patch};
-use crate::reduce::{Whole, walls};
+use crate::reduce::walls::{self, WallShare};
 
 /// Largest growth of the spacing per length along the surface.
 const GRADING: f32 = 0.2;
@@ -71,11 +71,16 @@ impl Density {
 
     /// The density of a part of a scan, by the law, the scale and the walls of the whole: what it is at a point follows from the
     /// surface around it alone.
-    pub(crate) fn of_part(tree: &Octree, features: &Features, whole: &Whole) -> Density {
-        let relative = relative_spacing(tree, features, &whole.law);
-        let unit = 1.0 / whole.scale.sqrt();
+    pub(crate) fn of_part(
+        tree: &Octree,
+        features: &Features,
+        (law, scale): (&Law, f64),
+        walls: Option<WallShare>,
+    ) -> Density {
+        let relative = relative_spacing(tree, features, law);
+        let unit = 1.0 / scale.sqrt();
         let deserved: Vec<f64> = deserved(features, &relative).collect();
-        let share = deserved.iter().map(|d| (d * whole.scale).min(1.0) as f32);
+        let share = deserved.iter().map(|d| (d * scale).min(1.0) as f32);
         let mut density = Density {
             share: share.collect(),
             spacing: relative
@@ -83,7 +88,7 @@ impl Density {
                 .map(|&h| (f64::from(h) * unit) as f32)
                 .collect(),
         };
-        if let Some(walls) = whole.walls {
+        if let Some(walls) = walls {
             let Density { spacing, share } = &mut density;
             let floor = walls::all_floors(tree, features, |i| spacing[i]);
             let new = |k: usize| {

@@ -37,7 +37,6 @@ pub(crate) mod tolerance;
 pub(crate) mod walls;
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 use crate::base::error::Result;
 use crate::base::par;
@@ -59,6 +58,7 @@ use crate::reduce::stats::stats;
 use crate::reduce::surroundings::Surroundings;
 
 pub use crate::reduce::stats::ReduceStats;
+pub use crate::reduce::walls::WallShare;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
 #[derive(Debug, Clone)]
@@ -116,15 +116,6 @@ pub(crate) struct Whole<'a> {
     pub(crate) chance: &'a dyn Fn(u32) -> f64,
 }
 
-/// What the thin walls of a scan get.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WallShare {
-    /// The scale of what the other parts get, in place of the whole's.
-    pub scale: f64,
-    /// Which part of what walls ask for beyond that they get.
-    pub allowed: f64,
-}
-
 /// [`reduce`] of a part of a scan: the target is the `whole`'s, and so that sub-domains do not depend on the part, the parameters say
 /// how many points they have.
 pub(crate) fn reduce_part(
@@ -164,7 +155,8 @@ fn run(
     let (goal, reason) = match whole {
         None => job.goal(progress)?,
         Some(whole) => {
-            let density = Density::of_part(at, &job.features, whole);
+            let density =
+                Density::of_part(at, &job.features, (&whole.law, whole.scale), whole.walls);
             (
                 Goal::Density(Quotas::Local(&chance), density),
                 String::new(),

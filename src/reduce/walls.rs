@@ -4,6 +4,7 @@ use crate::base::par;
 use crate::cloud::octree::Octree;
 use crate::features::Features;
 use crate::features::opposite::across;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Points that are asked together, for one of them.
@@ -17,6 +18,15 @@ const MOST: f64 = 0.75;
 const THINNER: f32 = 0.75;
 /// Steps of the search for what the other parts get: each halves what is uncertain of it.
 const STEPS: usize = 40;
+
+/// What the thin walls of a scan get.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct WallShare {
+    /// The scale of what the other parts get, in place of the whole's.
+    pub scale: f64,
+    /// Which part of what walls ask for beyond that they get.
+    pub allowed: f64,
+}
 
 /// Neighbouring points of a tree that are asked together, and the largest spacing that they should have where that is less than
 /// the `wanted` one; else infinite.

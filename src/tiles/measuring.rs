@@ -13,11 +13,11 @@ use crate::features::lines::{self, Thinned};
 use crate::features::noise::Scales;
 use crate::reduce::law::{Law, Patch};
 use crate::reduce::{WallShare, density, walls};
-use crate::tiles::grid::{Cube, Grid};
+use crate::tiles::grid::Grid;
+use crate::tiles::measured::Measured;
 use crate::tiles::measures::{Aim, LineMeasures, Measures, Surface};
 use crate::tiles::samples::Sample;
 use crate::tiles::tolerance;
-use glam::Vec3;
 
 /// Measures a scan by its samples. `curvature_weight` is that of [`crate::ReduceParams`].
 ///
@@ -114,89 +114,6 @@ fn shared(measured: &[Measured], whole: Measures, count: f64) -> Measures {
     }
 }
 
-/// One sample while it is measured.
-pub(super) struct Measured<'a> {
-    pub(super) sample: &'a Sample,
-    pub(super) tree: Octree,
-    /// In the caller's unit, of the unit frame's 1.
-    pub(super) side: f64,
-    pub(super) features: Features,
-    /// Of the tree's points, whether each counts.
-    counts: Vec<bool>,
-    /// Points of the scan that each of these stands for.
-    pub(super) weight: f64,
-}
-
-impl Measured<'_> {
-    fn new<'a>(
-        sample: &'a Sample,
-        grid: Grid,
-        progress: &mut dyn Progress,
-    ) -> Result<Measured<'a>> {
-        let corner = |pick: fn(u32, u32) -> u32| {
-            let places = sample.places.iter().copied();
-            let both = |a: [u32; 3], b: [u32; 3]| [0, 1, 2].map(|axis| pick(a[axis], b[axis]));
-            places.reduce(both).unwrap_or_default()
-        };
-        let cube = Cube::between(corner(u32::min), corner(u32::max));
-        let points: Vec<Vec3> = sample
-            .places
-            .iter()
-            .map(|&place| cube.unit(place))
-            .collect();
-        let tree = Octree::build(&points);
-        let features = Features::measure(&tree, progress)?;
-        let counts: Vec<bool> = tree
-            .order
-            .iter()
-            .map(|&i| in_range(sample.places[i as usize], sample.range))
-            .collect();
-        let inner = counts.iter().filter(|counts| **counts).count().max(1);
-        Ok(Measured {
-            sample,
-            side: cube.side() * grid.step(),
-            tree,
-            features,
-            counts,
-            weight: sample.points / inner as f64,
-        })
-    }
-
-    /// Values of the points that count, of all those of the tree.
-    pub(super) fn inner<T>(&self, values: impl Iterator<Item = T>) -> impl Iterator<Item = T> {
-        let each = values.zip(&self.counts);
-        each.filter_map(|(value, &counts)| counts.then_some(value))
-    }
-
-    /// Of the scan, that it stands for.
-    fn points(&self) -> f64 {
-        self.weight * self.counts.iter().filter(|counts| **counts).count() as f64
-    }
-
-    /// The patches that count, in the caller's unit.
-    fn patches(&self) -> Vec<Patch> {
-        let (low, high) = self.corners();
-        let all = density::patches(&self.tree, &self.features, self.weight);
-        let inside = |p: Vec3| p.cmpge(low).all() && p.cmple(high).all();
-        let inner = all.into_iter().filter(|(at, _)| inside(*at));
-        inner
-            .map(|(_, patch)| Patch {
-                curvature: patch.curvature / self.side,
-                area: patch.area * self.side * self.side,
-                ..patch
-            })
-            .collect()
-    }
-
-    /// Corners of the box of the points that count.
-    fn corners(&self) -> (Vec3, Vec3) {
-        let inner = self.inner(self.tree.points.iter().copied());
-        inner.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| {
-            (low.min(p), high.max(p))
-        })
-    }
-}
-
 impl Surface {
     /// What most of the scan has, by samples that are measured each for itself.
     fn of(measured: &[Measured]) -> Surface {
@@ -260,8 +177,4 @@ fn weighted_median(values: impl Iterator<Item = (f64, f64)>) -> f64 {
         2.0 * before >= total
     });
     middle.or(values.first()).map_or(0.0, |(value, _)| *value)
-}
-
-fn in_range(place: [u32; 3], [low, high]: [[u64; 3]; 2]) -> bool {
-    (0..3).all(|a| (low[a]..high[a]).contains(&u64::from(place[a])))
 }

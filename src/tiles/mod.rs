@@ -25,6 +25,7 @@
 
 pub mod counts;
 pub mod grid;
+mod measured;
 pub mod measures;
 pub mod measuring;
 pub mod plan;

@@ -10,8 +10,8 @@ use crate::reduce::height_field::{Patches, cloud_distances};
 use crate::reduce::law::Law;
 use crate::reduce::{Whole, density, reduce_part, tolerance};
 use crate::tiles::grid::Grid;
+use crate::tiles::measured::Measured;
 use crate::tiles::measures::{Measures, cell_points};
-use crate::tiles::measuring::Measured;
 use crate::tiles::reduce::chance;
 
 /// Largest spacing, in mean ones. Tiles are reduced with ten of the largest around them; with this, flat parts of a scan take up to a

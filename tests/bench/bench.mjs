@@ -27,7 +27,7 @@ const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(HERE, '../../../shared')
 const RUNS = 3;
 
 /** `tiles`: points of the survey. */
-const TILES_POINTS = 2_000_000;
+const TILES_POINTS = 1_000_000;
 
 /** Table 1 and Table 2 of the paper: points, seconds on an Intel Core 2 at 2.93 GHz. */
 const PAPER = {

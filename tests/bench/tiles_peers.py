@@ -93,11 +93,11 @@ def glb_points(path):
     values = np.ascontiguousarray(rows).view(kind).astype(float)
     if accessor.get("normalized"):
         values /= np.iinfo(np.dtype(kind)).max
-    if "matrix" in node:
-        matrix = np.array(node["matrix"]).reshape(4, 4).T
-        values = values @ matrix[:3, :3].T + matrix[:3, 3]
-    else:
-        values = values * np.array(node.get("scale", [1, 1, 1])) + np.array(node.get("translation", [0, 0, 0]))
+    values = values * np.array(node.get("scale", [1, 1, 1])) + np.array(node.get("translation", [0, 0, 0]))
+    index = gltf["nodes"].index(node)
+    for parent in gltf["nodes"]:
+        if index in parent.get("children", []):
+            values = values + np.array(parent.get("translation", [0, 0, 0]))
     x, y, z = values.T
     return np.stack([x, -z, y], axis=1)
 
