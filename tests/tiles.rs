@@ -1,16 +1,15 @@
 //! Tiles: the cuts do not show.
 
-use glam::Vec3;
-use pointweave::base::params::Carry;
+#[path = "common/tiling.rs"]
+mod tiling;
+
+use pointweave::base::params::{Carry, ReduceParams};
 use pointweave::base::rng::Rng;
 use pointweave::cloud::Attribute;
-use pointweave::cloud::octree::Octree;
 use pointweave::progress::Silent;
-use pointweave::tiles::points::Splitter;
-use pointweave::tiles::{
-    Aim, Counts, Measures, Plan, Points, Sample, Tile, measure, measures, reduce,
-};
+use pointweave::tiles::{Aim, Tile, reduce};
 use std::collections::BTreeMap;
+use tiling::{apart, joined, made, measured, planned, quantile, sorted};
 
 /// A bent sheet with a bump and some noise, 2 units wide.
 fn sheet(n: usize) -> Vec<[f64; 3]> {
@@ -28,99 +27,6 @@ fn sheet(n: usize) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The points of each leaf of a plan.
-fn sorted(points: &[[f64; 3]], plan: &Plan) -> BTreeMap<Tile, Points> {
-    let split = Splitter::new(plan.grid, plan.leaves.iter().map(|leaf| leaf.tile))
-        .split(points.iter().copied());
-    let mut at = 0;
-    let mut of = BTreeMap::new();
-    for (tile, count) in split.runs {
-        let places = split.places[at..at + count].to_vec();
-        of.insert(
-            tile,
-            Points {
-                places,
-                ..Points::default()
-            },
-        );
-        at += count;
-    }
-    of
-}
-
-fn joined<'a>(parts: impl Iterator<Item = &'a Points>) -> Points {
-    let places = parts.flat_map(|part| part.places.iter().copied()).collect();
-    Points {
-        places,
-        ..Points::default()
-    }
-}
-
-fn planned(points: &[[f64; 3]], most: u64) -> Plan {
-    let mut counts = Counts::default();
-    counts.add(points).unwrap();
-    Plan::new(&[counts], most).unwrap()
-}
-
-fn measured(plan: &Plan, leaves: &BTreeMap<Tile, Points>, aim: Aim) -> Measures {
-    let samples: Vec<Sample> = leaves
-        .iter()
-        .flat_map(|(&tile, points)| {
-            let groups = measures::samples(tile, &points.places, 4);
-            let each = points.places.len() as f64 / groups.len() as f64;
-            groups.into_iter().map(move |(indices, range)| Sample {
-                places: points.select(&indices).places,
-                range,
-                points: each,
-            })
-        })
-        .collect();
-    measure(&samples, plan.grid, (aim, 0.5), &mut Silent).unwrap()
-}
-
-/// All leaves, reduced.
-fn made(
-    plan: &Plan,
-    leaves: &BTreeMap<Tile, Points>,
-    measures: &Measures,
-) -> BTreeMap<Tile, Points> {
-    let of = |tile: Tile| {
-        let around = plan.around_leaf(tile);
-        let points = joined(around.iter().filter_map(|tile| leaves.get(tile)));
-        reduce::reduce(
-            &points,
-            (tile, 0),
-            (plan.grid, measures),
-            &BTreeMap::new(),
-            &mut Silent,
-        )
-        .unwrap()
-    };
-    plan.leaves
-        .iter()
-        .map(|leaf| (leaf.tile, of(leaf.tile)))
-        .collect()
-}
-
-/// How far the points of each are from the nearest of the other, in `spacing`s, in ascending order.
-fn apart(a: &Points, b: &Points, spacing: f64) -> Vec<f32> {
-    let unit = |p: &[u32; 3]| Vec3::from_array(p.map(|x| x as f32 / 4_294_967_296.0 - 0.5));
-    let [a, b] = [a, b].map(|points| points.places.iter().map(unit).collect::<Vec<_>>());
-    let mut far = Vec::new();
-    for (from, to) in [(&a, &b), (&b, &a)] {
-        let tree = Octree::build(to);
-        let distance = |&p: &Vec3| tree.nearest(p).distance2.sqrt() / spacing as f32;
-        far.extend(from.iter().map(distance));
-    }
-    far.sort_by(f32::total_cmp);
-    far
-}
-
-/// Of values in ascending order, the one that so large a share is no larger than.
-fn quantile(values: &[f32], share: f64) -> f32 {
-    values[((values.len() - 1) as f64 * share) as usize]
-}
-
 #[test]
 fn tiles_have_the_points_of_one_piece() {
     let points = sheet(160_000);
@@ -129,7 +35,7 @@ fn tiles_have_the_points_of_one_piece() {
     assert_eq!((whole.leaves.len(), whole.grid), (1, parts.grid));
     assert!(parts.leaves.len() > 7);
     let leaves = sorted(&points, &parts);
-    let measures = measured(&parts, &leaves, Aim::Ratio(0.1));
+    let measures = measured(&parts, &leaves, (Aim::Ratio(0.1), (4, 500)));
     assert!((measures.noise - 1e-3).abs() < 2e-4, "{}", measures.noise);
     let one = &made(&whole, &sorted(&points, &whole), &measures)[&Tile::ROOT];
     let tiles = made(&parts, &leaves, &measures);
@@ -153,7 +59,7 @@ fn tiles_have_the_points_of_one_piece() {
             &given,
             (tile, level),
             (parts.grid, &measures),
-            &BTreeMap::new(),
+            &ReduceParams::default(),
             &mut Silent,
         )
         .unwrap();
@@ -184,14 +90,17 @@ fn colours_and_scalars_go_along() {
     let measures = measured(
         &plan,
         &BTreeMap::from([(Tile::ROOT, leaf.clone())]),
-        Aim::Count(500.0),
+        (Aim::Count(500.0), (4, 500)),
     );
-    let carry = BTreeMap::from([("class".into(), Carry::Majority)]);
+    let options = ReduceParams {
+        attributes: BTreeMap::from([("class".into(), Carry::Majority)]),
+        ..ReduceParams::default()
+    };
     let reduced = reduce::reduce(
         &leaf,
         (Tile::ROOT, 0),
         (plan.grid, &measures),
-        &carry,
+        &options,
         &mut Silent,
     )
     .unwrap();
@@ -211,7 +120,7 @@ fn a_few_points_are_a_tile() {
         let points: Vec<[f64; 3]> = (0..count).map(|i| [0.5 * f64::from(i), 0.0, 1e3]).collect();
         let plan = planned(&points, 1000);
         let leaves = sorted(&points, &plan);
-        let measures = measured(&plan, &leaves, Aim::Ratio(0.3));
+        let measures = measured(&plan, &leaves, (Aim::Ratio(0.3), (4, 500)));
         let tiles = made(&plan, &leaves, &measures);
         let reduced = joined(tiles.values()).places.len();
         assert!(

@@ -11,6 +11,8 @@ export const TILES_FLAGS = /** @type {const} */ ({
   ratio: { type: 'string' },
   count: { type: 'string' },
   spacing: { type: 'string' },
+  tolerance: { type: 'string' },
+  outliers: { type: 'string' },
   'curvature-weight': { type: 'string' },
   attributes: { type: 'string', multiple: true },
   mesh: { type: 'boolean' },
@@ -32,10 +34,12 @@ export const TILES_ROWS = [
   ['--ratio N', 'about this share of the points in the finest tiles; default: 1/3'],
   ['--count N', 'about so many points in the finest tiles'],
   ['--spacing N', "the finest tiles' mean spacing of points, in the scan's unit"],
+  ['--tolerance N', "as few points as keep 99 % of the surface within this distance, in the scan's unit"],
+  ['--outliers HOW', 'keep or drop isolated points; default: keep'],
   ['--curvature-weight N', 'from even spacing to concentration on curved regions: 0 to 1; default: 0.5'],
   ['--attributes NAME=HOW', 'another scalar than intensity and classification that is kept, and how: mean, majority or nearest'],
   ['--mesh', 'tiles of a mesh instead of points; needs --ratio or --count'],
-  ['--mesh-points N', 'points through which the finest mesh goes, at most; default: 1000000'],
+  ['--mesh-points N', 'points through which the finest mesh goes, at most; default: 1000000, or what --memory holds'],
   ['--meshopt', 'compressed tiles; needs @gltf-transform/core, @gltf-transform/extensions and meshoptimizer'],
   ['--tile-points N', 'points of the scan in a tile, at most; default: 2000000'],
   ['--memory SIZE', 'how much all jobs may take together, as 2GB or 900MB; default: 2GB'],
@@ -57,6 +61,8 @@ export const STEPS = /** @type {const} */ (['count', 'plan', 'sort', 'measure', 
 /** Bytes that a job takes, and for each point of a tile: measured, `docs/tiles.md`. */
 const JOB = 250e6;
 const POINT = 330;
+/** For each point of a mesh. */
+const MESH_POINT = 1500;
 
 /**
  * @typedef {object} TilesSaid
@@ -65,6 +71,7 @@ const POINT = 330;
  * @property {string} folder
  * @property {import('../tiles/plan.js').TileOptions} options
  * @property {number} jobs
+ * @property {{ memory: number, costOf: (stage: string) => number }} room
  * @property {boolean} resume
  * @property {boolean} keepWork
  * @property {string} [tile]
@@ -93,11 +100,13 @@ export function tilesSaid(values, positionals, { read, unit }) {
     const why = `tiles of ${tilePoints} points take ${Math.round((JOB + POINT * tilePoints) / 1e6)} MB`;
     throw new UsageError(`--memory is ${values.memory ?? '2GB'}, and ${why}${fits >= 1000 ? `: --tile-points ${fits} fits` : ''}`);
   }
+  const mesh = meshing(values, memory);
   const jobs = value('jobs', integer(1, 256), values) ?? availableParallelism();
   return {
     step, inputs, folder,
-    options: { target: targetOf(values), tilePoints, ...curvature(values), attributes: carried(values), meshopt: Boolean(values.meshopt), ...meshing(values), unit, read },
+    options: { target: targetOf(values), tilePoints, ...curvature(values), attributes: carried(values), outliers: outliersOf(values), meshopt: Boolean(values.meshopt), ...mesh, unit, read },
     jobs: Math.max(1, Math.min(jobs, most)),
+    room: { memory, costOf: (stage) => JOB + (stage === 'mesh' ? MESH_POINT * (mesh.meshPoints ?? 0) : POINT * tilePoints) },
     resume: Boolean(values.resume),
     keepWork: Boolean(values['keep-work']),
     tile: values.tile, input: values.input, stage: values.stage,
@@ -111,10 +120,11 @@ function value(name, rule, values) {
 
 /** @param {Record<string, any>} values @returns {import('../tiles/plan.js').TileOptions['target']} */
 function targetOf(values) {
-  const given = ['ratio', 'count', 'spacing'].filter((name) => values[name] !== undefined);
+  const given = ['ratio', 'count', 'spacing', 'tolerance'].filter((name) => values[name] !== undefined);
   if (given.length > 1) throw new UsageError(`--${given[0]} and --${given[1]} exclude each other`);
   const [name = 'ratio'] = given;
-  const rules = { ratio: TARGETS.ratio, count: TARGETS.count, spacing: number(0, Number.MAX_VALUE, { open: '(' }) };
+  const length = number(0, Number.MAX_VALUE, { open: '(' });
+  const rules = { ratio: TARGETS.ratio, count: TARGETS.count, spacing: length, tolerance: length };
   return /** @type {any} */ ({ [name]: value(name, rules[/** @type {keyof typeof rules} */ (name)], values) ?? 1 / 3 });
 }
 
@@ -124,12 +134,24 @@ function curvature(values) {
   return weight === undefined ? {} : { curvatureWeight: weight };
 }
 
-/** @param {Record<string, any>} values */
-function meshing(values) {
+/** @param {Record<string, any>} values @param {number} memory of all jobs */
+function meshing(values, memory) {
   const points = value('mesh-points', integer(1000, 5_000_000), values);
+  const fits = Math.floor((memory - JOB) / MESH_POINT / 1000) * 1000;
   if (!values.mesh && points !== undefined) throw new UsageError('--mesh-points is for --mesh');
-  if (values.mesh && values.spacing !== undefined) throw new UsageError('--mesh needs --ratio or --count, which tell how many points there will be');
-  return values.mesh ? { meshPoints: points ?? 1_000_000 } : {};
+  if (values.mesh && (values.spacing ?? values.tolerance) !== undefined) throw new UsageError('--mesh needs --ratio or --count, which tell how many points there will be');
+  if (!values.mesh) return {};
+  if (fits < 1000 || (points ?? 0) > fits) {
+    const needed = `a mesh through ${points ?? 1000} points takes ${Math.round((JOB + MESH_POINT * (points ?? 1000)) / 1e6)} MB`;
+    throw new UsageError(`--memory is ${values.memory ?? '2GB'}, and ${needed}${fits >= 1000 ? `: --mesh-points ${fits} fits` : ''}`);
+  }
+  return { meshPoints: points ?? Math.min(1_000_000, fits) };
+}
+
+/** @param {{ outliers?: string }} values @returns {'keep' | 'drop'} */
+function outliersOf({ outliers = 'keep' }) {
+  if (outliers !== 'keep' && outliers !== 'drop') throw new UsageError(`--outliers is '${outliers}': expected keep or drop`);
+  return outliers;
 }
 
 /** @param {{ attributes?: string[] }} values */

@@ -3,6 +3,7 @@ import { stat } from 'node:fs/promises';
 import { basename, join } from 'node:path';
 import { compressorFor } from '../files/compressor.js';
 import { Folder } from '../tiles/folder.js';
+import { partsOf } from '../tiles/parts.js';
 import { MANIFEST, PLAN, STAGES, TILESET, countsPath } from '../tiles/plan.js';
 import { runStep } from '../tiles/run-step.js';
 import { Workers, runAll } from '../tiles/schedule.js';
@@ -40,10 +41,11 @@ export async function tiles({ json }, said, signal) {
     say(`${said.folder}: nothing to do`);
     return true;
   }
-  const workers = new Workers(folder, said.jobs);
+  const workers = new Workers(folder, said.jobs, said.room);
   try {
-    const made = await planned(workers, inputs, given, said);
-    await runAll(workers, made.tasks, inputs, teller(made));
+    const pieces = await piecesOf(inputs, said, signal);
+    const made = await planned(workers, pieces, given, said);
+    await runAll(workers, made.tasks, pieces.map(({ path }) => path), teller(made));
   } finally {
     await workers.end();
   }
@@ -59,6 +61,24 @@ export async function tiles({ json }, said, signal) {
   return true;
 }
 
+/** @typedef {{ path: string, part?: import('../tiles/parts.js').Part }} Piece a file, or a part of a large one */
+
+/**
+ * Files, and the parts of those that are read in parts.
+ * @param {string[]} inputs @param {TilesSaid} said @param {AbortSignal} signal
+ * @returns {Promise<Piece[]>}
+ */
+async function piecesOf(inputs, { options: { attributes } }, signal) {
+  /** @type {Piece[]} */
+  const pieces = [];
+  for (const path of inputs) {
+    // Times are counted from the first of a file.
+    const parts = 'gps_time' in attributes ? [] : await partsOf(path, signal);
+    pieces.push(...(parts.length > 0 ? parts.map((part) => ({ path, part })) : [{ path }]));
+  }
+  return pieces;
+}
+
 /** What tells whether the files are those of an earlier run. @param {string[]} inputs */
 function givenOf(inputs) {
   return Promise.all(inputs.map(async (input) => ({ name: basename(input), bytes: (await stat(input)).size })));
@@ -66,9 +86,9 @@ function givenOf(inputs) {
 
 /**
  * Counts what is not counted, and plans; or goes on with the plan that is there.
- * @param {Workers} workers @param {string[]} inputs @param {Awaited<ReturnType<typeof givenOf>>} given @param {TilesSaid} said
+ * @param {Workers} workers @param {Piece[]} pieces @param {Awaited<ReturnType<typeof givenOf>>} given @param {TilesSaid} said
  */
-async function planned(workers, inputs, given, { options, resume, folder: path }) {
+async function planned(workers, pieces, given, { options, resume, folder: path }) {
   const { folder } = workers;
   const key = JSON.stringify({ options, given });
   const there = await folder.has('work/inputs.json');
@@ -77,20 +97,21 @@ async function planned(workers, inputs, given, { options, resume, folder: path }
   await folder.writeJson('work/inputs.json', { options, given });
   if (await folder.has(PLAN)) return planOf(folder);
   let counted = 0;
-  let bad = 0;
-  await inTurn(workers, inputs, async (input, i) => {
+  /** @type {Set<string>} */
+  const bad = new Set();
+  await inTurn(workers, pieces, async ({ path: input, part }, i) => {
     try {
-      if (!(await folder.has(countsPath(i)))) await workers.run({ stage: 'count', tile: `${i}`, input, read: options.read });
-      say(`counted ${++counted} of ${inputs.length}: ${input}`);
+      if (!(await folder.has(countsPath(i)))) await workers.run({ stage: 'count', tile: `${i}`, input, read: options.read, part });
+      say(`counted ${++counted} of ${pieces.length}: ${input}${part ? `, part ${part.index + 1}` : ''}`);
     } catch (error) {
       folder.signal.throwIfAborted();
       // The other files are counted all the same, and all bad ones are known at once.
-      bad++;
-      say(sentence(error));
+      if (!bad.has(input)) say(sentence(error));
+      bad.add(input);
     }
   });
-  if (bad > 0) throw new Error(`${bad} of ${inputs.length} files cannot be read: nothing was made of the others yet`);
-  const made = await plan(folder, inputs.length, options);
+  if (bad.size > 0) throw new Error(`${bad.size} of ${given.length} files cannot be read: nothing was made of the others yet`);
+  const made = await plan(folder, pieces.length, options);
   const points = made.inputs.reduce((sum, input) => sum + input.points, 0);
   const bytes = points * (SORTED + SHOWN / 3 + 4 * made.names.length);
   say(`${grouped(points)} points in ${made.octree.leaves.length} tiles and ${made.octree.inner.length} above them; the work takes about ${sized(bytes)} of disk`);
@@ -99,17 +120,17 @@ async function planned(workers, inputs, given, { options, resume, folder: path }
 
 /**
  * For each input, as many at a time as there are workers.
- * @param {Workers} workers @param {string[]} inputs @param {(input: string, i: number) => Promise<void>} each
+ * @param {Workers} workers @param {Piece[]} pieces @param {(piece: Piece, i: number) => Promise<void>} each
  */
-async function inTurn({ most }, inputs, each) {
+async function inTurn({ most }, pieces, each) {
   let next = 0;
   const work = async () => {
-    while (next < inputs.length) {
+    while (next < pieces.length) {
       const i = next++;
-      await each(inputs[i], i);
+      await each(pieces[i], i);
     }
   };
-  await Promise.all(Array.from({ length: Math.min(most, inputs.length) }, work));
+  await Promise.all(Array.from({ length: Math.min(most, pieces.length) }, work));
 }
 
 /** Tells of every stage when it is done, and on a terminal of every task. @param {Plan} plan */

@@ -10,7 +10,7 @@ import { track } from './progress.js';
 /**
  * A function of `src/js` and what it takes; a progress callback is added as the last argument.
  * @typedef {object} Request
- * @property {'prepare' | 'simplify' | 'texture' | 'poster' | 'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'openArchive' | 'unpack' | 'write' | 'countPoints' | 'takeCounts' | 'planTiles' | 'openLeaves' | 'splitPoints' | 'sampleTile' | 'measureTiles' | 'tileSurroundings' | 'reduceTile' | 'sample' | 'buildPool' | 'lendThread'} call
+ * @property {'prepare' | 'simplify' | 'texture' | 'poster' | 'reduce' | 'reconstruct' | 'inspect' | 'readStart' | 'readPush' | 'readEnd' | 'readFile' | 'readPicture' | 'decodePicture' | 'openArchive' | 'unpack' | 'lazChunks' | 'write' | 'countPoints' | 'takeCounts' | 'planTiles' | 'openLeaves' | 'splitPoints' | 'sampleTile' | 'measureTiles' | 'tileSurroundings' | 'reduceTile' | 'sample' | 'buildPool' | 'lendThread'} call
  * @property {unknown[]} args
  */
 

@@ -9,7 +9,8 @@ import { cloudArgument, resultArgument } from './clouds.js';
 import { Core } from './core.js';
 import { PointweaveError } from './errors.js';
 import { lightened, meshArgument } from './light.js';
-import { inProcessHost, runHere } from './worker-host.js';
+import { withInstance } from './instance.js';
+import { runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, lookedAt, preparedArgument, preparedOf } from './preparing.js';
 import { posterArguments, posterOf } from './posing.js';
@@ -98,9 +99,7 @@ function run(core, call, subject, options) {
  * @returns {Promise<T>}
  */
 async function withModule({ platform: { compile, loadBindings }, wasmUrl }, build, watch, job) {
-  const [module, bindings] = await Promise.all([compile(build, wasmUrl), loadBindings(build)]);
-  const host = await inProcessHost(bindings, { build, module });
-  return keepAlive(job((request) => host.run(request, watch)));
+  return keepAlive(withInstance([compile(build, wasmUrl), loadBindings(build)], build, watch, job));
 }
 
 /** @param {Place} place @param {any} cloud @param {any} steps @param {unknown} options */

@@ -30,8 +30,20 @@ export class Folder {
       return bytes.byteOffset % 4 === 0 ? bytes : new Uint8Array(bytes);
     } catch (error) {
       this.signal.throwIfAborted();
-      throw new PointweaveError({ code: 'bad-file', message: `${this.at(name)} cannot be read (${/** @type {any} */ (error).code}): the step that makes it has not run`, expected: name });
+      throw this.#missing(name, error);
     }
+  }
+
+  /** That a file is there. @param {string} name */
+  async expect(name) {
+    await stat(this.at(name)).catch((error) => {
+      throw this.#missing(name, error);
+    });
+  }
+
+  /** @param {string} name @param {any} error */
+  #missing(name, { code }) {
+    return new PointweaveError({ code: 'bad-file', message: `${this.at(name)} cannot be read (${code}): the step that makes it has not run`, expected: name });
   }
 
   /** @param {string} name @returns {Promise<any>} */

@@ -1,7 +1,7 @@
 /** The wasm of the steps, in this thread. */
 import { readFile } from 'node:fs/promises';
+import { withInstance } from '../engine/instance.js';
 import { platform } from '../engine/platform.node.js';
-import { inProcessHost } from '../engine/worker-host.js';
 
 /** @import { Bindings, Request, WasmBuild } from '../engine/core.js' */
 /** @typedef {(request: Request) => Promise<any>} Ask */
@@ -17,16 +17,18 @@ let compiled;
  * @param {(ask: Ask) => Promise<T>} job
  * @returns {Promise<T>}
  */
-export async function withModule(build, signal, job) {
-  const [module, bindings] = await (build === 'tiles' ? ownModule() : Promise.all([platform.compile(build, undefined), platform.loadBindings(build)]));
-  const host = await inProcessHost(bindings, { build: /** @type {WasmBuild} */ (build), module });
-  return job((request) => host.run(request, { signal }));
+export function withModule(build, signal, job) {
+  /** @type {[Promise<WebAssembly.Module>, Promise<Bindings>]} */
+  const wasm = build === 'tiles' ? [compileOwn(), loadOwn()] : [platform.compile(build, undefined), platform.loadBindings(build)];
+  return withInstance(wasm, /** @type {WasmBuild} */ (build), { signal }, job);
 }
 
-/** @returns {Promise<[WebAssembly.Module, Bindings]>} */
-async function ownModule() {
-  const wasm = new URL('../wasm/tiles/pointweave_bg.wasm', import.meta.url);
-  compiled ??= readFile(wasm).then((bytes) => WebAssembly.compile(bytes));
-  const { makeBindings } = await import('../wasm/tiles/pointweave.js');
-  return [await compiled, makeBindings()];
+function compileOwn() {
+  compiled ??= readFile(new URL('../wasm/tiles/pointweave_bg.wasm', import.meta.url)).then((bytes) => WebAssembly.compile(bytes));
+  return compiled;
+}
+
+/** @returns {Promise<Bindings>} */
+async function loadOwn() {
+  return (await import('../wasm/tiles/pointweave.js')).makeBindings();
 }

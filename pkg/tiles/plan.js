@@ -22,10 +22,11 @@ import { SCRIPTS } from './page.js';
  * @typedef {{ corner: [number, number, number], size: number, strays: number, leaves: Planned[], inner: Planned[] }} Octree
  *
  * @typedef {object} TileOptions
- * @property {{ ratio: number } | { count: number } | { spacing: number }} target
+ * @property {{ ratio: number } | { count: number } | { spacing: number } | { tolerance: number }} target
  * @property {number} tilePoints
  * @property {number} [curvatureWeight]
  * @property {Record<string, string>} attributes how scalars are carried, and which others than the common ones are kept
+ * @property {'keep' | 'drop'} outliers
  * @property {boolean} meshopt
  * @property {number} [meshPoints] the tiles are meshes, the finest through about so many points at most
  * @property {import('../types.js').Unit} [unit]
@@ -35,7 +36,7 @@ import { SCRIPTS } from './page.js';
  * @property {number} version
  * @property {string} made by which package
  * @property {TileOptions} options
- * @property {{ name: string, bytes: number, points: number }[]} inputs
+ * @property {{ name: string, bytes: number, points: number, part?: import('./parts.js').Part, told?: import('./scan.js').Told }[]} inputs files, or parts that follow each other and what the file tells
  * @property {string[]} names of the scalars
  * @property {import('../types.js').Unit} [unit]
  * @property {boolean} [seenFromAbove] all inputs are
@@ -47,8 +48,9 @@ import { SCRIPTS } from './page.js';
 /** The stages, in the order in which they run. @type {Stage[]} */
 export const STAGES = ['sort', 'measure', 'density', 'make', 'level', 'mesh', 'finish'];
 
-/** Leaves that are measured, at most. */
+/** Leaves that are measured, at most; and where their samples are reduced for a tolerance. */
 const SAMPLES = 256;
+const TOLERANCE_SAMPLES = 32;
 
 export const PLAN = 'work/plan.json';
 export const DENSITY = 'work/density.json';
@@ -100,12 +102,14 @@ export function meshedOn(octree, level, finest) {
 
 /**
  * @param {Octree} octree
+ * @param {TileOptions['target']} target
  * @param {number} [finest] level of meshes
  * @returns {PlannedTask[]}
  */
-export function tasksOf(octree, finest) {
+export function tasksOf(octree, target, finest) {
   const { leaves, inner } = octree;
   const files = new Map(leaves.map((leaf) => [leaf.tile, leaf.files.map(([input]) => sortedPath(input, leaf.tile))]));
+  const neighbours = new Map(leaves.map((leaf) => [leaf.tile, leaf.around]));
   const weights = new Map(leaves.map((leaf) => [leaf.tile, leaf.files.reduce((sum, [, points]) => sum + points, 0)]));
   /** @type {Map<number, PlannedTask>} */
   const sorts = new Map();
@@ -117,11 +121,11 @@ export function tasksOf(octree, finest) {
       sorts.set(input, task);
     }
   }
-  const stride = Math.ceil(leaves.length / SAMPLES);
+  const stride = Math.ceil(leaves.length / ('tolerance' in target ? TOLERANCE_SAMPLES : SAMPLES));
   const sampled = leaves.filter((_, i) => i % stride === 0).map(({ tile }) => tile);
   const of = (/** @type {Map<string, any>} */ map, /** @type {string} */ tile) => map.get(tile) ?? [];
   /** @type {PlannedTask[]} */
-  const measures = sampled.map((tile) => ({ id: `measure-${tile}`, stage: 'measure', tile, needs: [PLAN, ...of(files, tile)], makes: [samplePath(tile)], weight: weights.get(tile) }));
+  const measures = sampled.map((tile) => ({ id: `measure-${tile}`, stage: 'measure', tile, needs: [PLAN, ...of(neighbours, tile).flatMap((/** @type {string} */ other) => of(files, other))], makes: [samplePath(tile)], weight: weights.get(tile) }));
   const makes = (/** @type {string} */ tile) => [madePath(tile), factsPath(tile), ...(finest === undefined ? [glbPath(tile)] : [])];
   /** @type {PlannedTask[]} */
   const made = leaves.map(({ tile, around }) => ({

@@ -2,9 +2,9 @@
 import * as steps from './steps.js';
 
 /** @param {import('./folder.js').Folder} folder @param {import('./schedule.js').Work} work */
-export async function runStep(folder, { stage, tile = '', input = '', read = {} }) {
+export async function runStep(folder, { stage, tile = '', input = '', read = {}, part }) {
   switch (stage) {
-    case 'count': return steps.count(folder, Number(tile), input, read);
+    case 'count': return steps.count(folder, Number(tile), input, { read, part });
     case 'sort': return steps.sort(folder, Number(tile), input);
     case 'measure': return steps.measure(folder, tile);
     case 'density': return steps.density(folder);

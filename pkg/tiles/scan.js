@@ -8,8 +8,10 @@ import { kept, leftOutOf } from '../files/left-out.js';
 import { toBytes } from '../files/point-columns.js';
 import { readBlocks, readerError, readerOf } from '../files/reading.js';
 import { withModule } from './modules.js';
+import { openPart } from './parts.js';
 
 /** @import { Block, Summary } from '../files/point-columns.js' */
+/** @import { Part } from './parts.js' */
 
 /** Coordinates of this size or more are none: `src/formats/sentinels.rs`. */
 const HUGE = 1e30;
@@ -21,13 +23,14 @@ const HUGE = 1e30;
 
 /**
  * @param {string} path
+ * @param {Part | undefined} part of the file, where it is not all
  * @param {Record<string, any>} options of the reader
  * @param {AbortSignal} signal
  * @param {(block: Block) => Promise<void>} take
  * @returns {Promise<Summary>}
  */
-export async function readScan(path, options, signal, take) {
-  const file = byteSourceOf(await openInput(path, signal));
+export async function readScan(path, part, options, signal, take) {
+  const file = part ? await openPart(path, part, signal) : byteSourceOf(await openInput(path, signal));
   if (!/\.3mf$/i.test(path) && (await isArchive(file))) {
     throw new PointweaveError({ code: 'unsupported-file', message: `${basename(path)} is an archive: tiles reads the files that are in it, once it is unpacked`, expected: 'a scan', found: 'an archive' });
   }
@@ -47,6 +50,25 @@ export async function readScan(path, options, signal, take) {
 export function toldOf({ format, colorScale, hasColors, leftOut, attributes, unit, up, seenFromAbove, dropped }) {
   const noData = leftOut.noData.map((values) => Array.from(values));
   return { format, colorScale, hasColors, leftOut: /** @type {any} */ ({ ...leftOut, noData, noReturns: Array.from(leftOut.noReturns) }), attributes, unit, up, seenFromAbove, dropped };
+}
+
+/** What the parts of a file tell together. @param {Told[]} parts @returns {Told} */
+export function toldTogether(parts) {
+  const [first] = parts;
+  const union = (/** @type {((told: Told) => ArrayLike<any>)} */ of) => [...new Set(parts.flatMap((told) => Array.from(of(told))))];
+  const colored = parts.filter(({ hasColors }) => hasColors);
+  return {
+    ...first,
+    hasColors: colored.length > 0,
+    // The part with the largest values tells of how many bits all are.
+    colorScale: Math.min(...(colored.length > 0 ? colored : parts).map(({ colorScale }) => colorScale)),
+    attributes: union(({ attributes }) => attributes),
+    leftOut: /** @type {any} */ ({
+      huge: parts.some(({ leftOut }) => leftOut.huge),
+      noData: [0, 1, 2].map((axis) => union(({ leftOut }) => leftOut.noData[axis] ?? [])),
+      noReturns: parts.flatMap(({ leftOut }) => Array.from(leftOut.noReturns)),
+    }),
+  };
 }
 
 /** Whether some of the file's points stand for none. @param {Told} told */

@@ -1,13 +1,14 @@
 /** All tasks of a plan on this machine, as many at a time as there are workers. */
 import { Worker } from 'node:worker_threads';
 import { PointweaveError } from '../engine/errors.js';
+import { STAGES } from './plan.js';
 
 /** @import { Folder } from './folder.js' */
 /** @import { PlannedTask } from './plan.js' */
 
 /**
  * What a worker is asked to do: a stage, and of `count` and `sort` where the input lies.
- * @typedef {{ stage: import('./plan.js').Stage | 'count', tile?: string, input?: string, read?: Record<string, any> }} Work
+ * @typedef {{ stage: import('./plan.js').Stage | 'count', tile?: string, input?: string, read?: Record<string, any>, part?: import('./parts.js').Part }} Work
  */
 
 /** Does one thing at a time; each of them ends with it. */
@@ -17,10 +18,11 @@ export class Workers {
   /** @type {Set<Worker>} */
   #all = new Set();
 
-  /** @param {Folder} folder @param {number} most */
-  constructor(folder, most) {
+  /** @param {Folder} folder @param {number} most @param {{ memory: number, costOf: (stage: string) => number }} room bytes that all may take together, and a task of each stage */
+  constructor(folder, most, room) {
     this.folder = folder;
     this.most = most;
+    this.room = room;
   }
 
   /** @param {Work} work @returns {Promise<void>} */
@@ -77,9 +79,13 @@ export async function runAll(workers, tasks, inputs, tell) {
   for (const name of new Set(tasks.flatMap(({ needs, makes }) => [...needs, ...makes]))) if (await folder.has(name)) there.add(name);
   const missing = tasks.filter(({ makes }) => !makes.every((name) => there.has(name)));
   for (const { makes } of missing) for (const name of makes) there.delete(name);
-  const waiting = [...missing];
+  // Of a stage the heaviest first: no large one is left to the end, when all others are done.
+  const order = (/** @type {PlannedTask} */ { stage }) => STAGES.indexOf(stage);
+  const waiting = missing.toSorted((a, b) => order(a) - order(b) || (b.weight ?? 0) - (a.weight ?? 0));
   /** @type {Set<Promise<void>>} */
   const running = new Set();
+  const { memory, costOf } = workers.room;
+  let taken = 0;
   let done = 0;
   /** @type {unknown} */
   let failed;
@@ -94,11 +100,16 @@ export async function runAll(workers, tasks, inputs, tell) {
       },
       (error) => void (failed ??= { error }),
     );
-    const ended = work.finally(() => running.delete(ended));
+    taken += costOf(stage);
+    const ended = work.finally(() => {
+      taken -= costOf(stage);
+      running.delete(ended);
+    });
     running.add(ended);
   };
   while (!failed && (waiting.length > 0 || running.size > 0)) {
-    for (let task; !failed && running.size < workers.most && (task = waiting.find(({ needs }) => needs.every((name) => there.has(name)))); ) start(task);
+    const mayRun = (/** @type {PlannedTask} */ { stage, needs }) => taken + costOf(stage) <= memory && needs.every((name) => there.has(name));
+    for (let task; !failed && running.size < workers.most && (task = waiting.find(mayRun)); ) start(task);
     if (running.size === 0) throw new PointweaveError({ code: 'internal', message: `nothing makes what ${waiting[0].id} needs` });
     await Promise.race(running);
   }

@@ -1,16 +1,17 @@
 /** The steps of tiles, each by its stage: what it reads from the folder and what it writes there. They hold nothing between them. */
-import { appendFile, mkdir, readFile, rename, stat } from 'node:fs/promises';
+import { mkdir, readFile, rename, stat } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { compressorFor } from '../files/compressor.js';
 import { version } from '../files/version.js';
 import { PointweaveError } from '../engine/errors.js';
+import { CellWriter, around, inRange, readCells } from './cells.js';
 import { belonging, between, boxOf, decode, encode, joined, selected } from './columns.js';
 import { sha256 } from './folder.js';
 import { withModule } from './modules.js';
 import { meshLevel } from './meshing.js';
 import { SCRIPTS, pageOf } from './page.js';
 import { DENSITY, MANIFEST, PAGE, PLAN, TILESET, countsPath, cutOf, deepest, factsPath, glbPath, madePath, meshPath, samplePath, sortedPath, tasksOf } from './plan.js';
-import { columnsOf, leavesOut, positionsOf, readScan, toldOf } from './scan.js';
+import { columnsOf, leavesOut, positionsOf, readScan, toldOf, toldTogether } from './scan.js';
 import { tilesetOf } from './tileset.js';
 
 /** @import { Columns } from './columns.js' */
@@ -20,8 +21,12 @@ import { tilesetOf } from './tileset.js';
 const VERSION = 1;
 /** Scalars that are kept if a file has them. */
 const COMMON = ['intensity', 'classification'];
-/** Groups of points that are measured, at least. */
-const SAMPLES = 128;
+/** Groups of points that are measured, at least, and points of each, at least. */
+const SAMPLES = { count: 128, points: 500 };
+/** Of those that are reduced until they keep a tolerance: larger, so that they hold some reduced points. */
+const TOLERANCE_SAMPLES = { count: 32, points: 8000 };
+/** Share of a leaf's side around it that is sampled, too: `src/tiles/samples.rs`. */
+const AROUND = 1 / 4;
 /** Bytes of sorted points that are kept before they are written. */
 const BUFFER = 64 << 20;
 
@@ -30,9 +35,9 @@ const BUFFER = 64 << 20;
  * @param {Folder} folder
  * @param {number} index
  * @param {string} path
- * @param {Record<string, any>} read
+ * @param {{ read: Record<string, any>, part?: import('./parts.js').Part }} what how it is read, and which part
  */
-export async function count(folder, index, path, read) {
+export async function count(folder, index, path, { read, part }) {
   const name = basename(path);
   await withModule('tiles', folder.signal, async (ask) => {
     let points = 0;
@@ -40,7 +45,7 @@ export async function count(folder, index, path, read) {
     const pass = async (told) => {
       points = 0;
       await ask({ call: 'takeCounts', args: [] });
-      return toldOf(await readScan(path, read, folder.signal, async (block) => {
+      return toldOf(await readScan(path, part, read, folder.signal, async (block) => {
         const positions = positionsOf(block, told);
         points += positions.length / 3;
         await ask({ call: 'countPoints', args: [positions] });
@@ -51,8 +56,8 @@ export async function count(folder, index, path, read) {
     if (leavesOut(told)) told = await pass(told);
     /** @type {Uint8Array} */
     const counts = await ask({ call: 'takeCounts', args: [] });
-    const { size } = await stat(path);
-    await folder.writeJson(countsPath(index), { name, bytes: size, points, told, counts: Buffer.from(counts).toString('base64') });
+    const size = part ? part.to - part.from : (await stat(path)).size;
+    await folder.writeJson(countsPath(index), { name, bytes: size, points, part, told, counts: Buffer.from(counts).toString('base64') });
   });
 }
 
@@ -67,6 +72,10 @@ export async function plan(folder, inputs, options) {
   /** @type {(Plan['inputs'][number] & { told: import('./scan.js').Told, counts: string })[]} */
   const counted = [];
   for (let i = 0; i < inputs; i++) counted.push(await folder.json(countsPath(i)));
+  for (const parts of byFile(counted)) {
+    const told = toldTogether(parts.map((part) => part.told));
+    if (parts.length > 1) for (const part of parts) part.told = told;
+  }
   const counts = counted.map(({ counts: text }) => new Uint8Array(Buffer.from(text, 'base64')));
   /** @type {import('./plan.js').Octree} */
   const octree = await withModule('tiles', folder.signal, (ask) => ask({ call: 'planTiles', args: [counts, options.tilePoints] }));
@@ -82,16 +91,27 @@ export async function plan(folder, inputs, options) {
     version: VERSION,
     made: `pointweave ${await version()}`,
     options,
-    inputs: counted.map(({ name, bytes, points }) => ({ name, bytes, points })),
+    inputs: counted.map(({ name, bytes, points, part, told }) => ({ name, bytes, points, ...(part && { part, told }) })),
     names,
     unit: options.unit ?? unit,
     ...(seenFromAbove && { seenFromAbove }),
     octree,
     ...(finest !== undefined && { finest }),
-    tasks: tasksOf(octree, finest),
+    tasks: tasksOf(octree, options.target, finest),
   };
   await folder.writeJson(PLAN, made);
   return made;
+}
+
+/** Inputs that are parts of one file together. @template {Plan['inputs'][number]} T @param {T[]} inputs */
+function byFile(inputs) {
+  /** @type {T[][]} */
+  const files = [];
+  for (const input of inputs) {
+    if (input.part && input.part.index > 0) files.at(-1)?.push(input);
+    else files.push([input]);
+  }
+  return files;
 }
 
 /** Points of the finest tiles, about. @param {TileOptions['target']} target @param {number} points of the scan */
@@ -119,39 +139,28 @@ export async function planOf(folder) {
  * @param {string} path where it lies here
  */
 export async function sort(folder, index, path) {
-  const { octree, options, names } = await planOf(folder);
-  const { told } = await folder.json(countsPath(index));
+  const { octree, options, names, inputs } = await planOf(folder);
+  const { part: some, told = (await folder.json(countsPath(index))).told } = inputs[index];
   const leaves = octree.leaves.map(({ tile }) => tile);
   const part = `work/sorted/${index}.part`;
   await folder.remove(part);
   await mkdir(folder.at(part), { recursive: true });
-  /** @type {Map<string, Uint8Array[]>} */
-  const waiting = new Map();
-  let held = 0;
-  const flush = async () => {
-    for (const [tile, blocks] of waiting) await appendFile(folder.at(`${part}/${tile}.bin`), Buffer.concat(blocks));
-    waiting.clear();
-    held = 0;
-  };
+  const points = new Map(octree.leaves.flatMap(({ tile, files }) => files.filter(([input]) => input === index).map(([, count]) => [tile, count])));
+  const cells = new CellWriter(folder.at(part), points);
   await withModule('tiles', folder.signal, async (ask) => {
     await ask({ call: 'openLeaves', args: [octree, leaves] });
-    await readScan(path, options.read, folder.signal, async (block) => {
+    await readScan(path, some, options.read, folder.signal, async (block) => {
       const { places, order, tiles, counts } = await ask({ call: 'splitPoints', args: [positionsOf(block, told)] });
       const columns = { places, ...belonging(columnsOf(block, told, names), order) };
       let from = 0;
       tiles.forEach((/** @type {string} */ tile, /** @type {number} */ i) => {
-        const to = from + counts[i];
-        const bytes = encode(between(columns, from, to));
-        const blocks = waiting.get(tile);
-        if (blocks) blocks.push(bytes);
-        else waiting.set(tile, [bytes]);
-        held += bytes.length;
-        from = to;
+        cells.add(tile, between(columns, from, from + counts[i]));
+        from += counts[i];
       });
-      if (held > BUFFER) await flush();
+      if (cells.held > BUFFER) await cells.flush();
     });
   });
-  await flush();
+  await cells.end();
   await folder.remove(`work/sorted/${index}`);
   await rename(folder.at(part), folder.at(`work/sorted/${index}`));
 }
@@ -162,15 +171,18 @@ export async function sort(folder, index, path) {
  * @param {string} tile
  */
 export async function measure(folder, tile) {
-  const { octree, tasks } = await planOf(folder);
-  const { files } = found(octree.leaves, tile);
-  const { places } = joined(await blocksOf(folder, files.map(([input]) => sortedPath(input, tile))), []);
-  const count = Math.ceil(SAMPLES / tasks.filter(({ stage }) => stage === 'measure').length);
+  const { octree, options, tasks } = await planOf(folder);
+  const { files, around: others } = found(octree.leaves, tile);
+  const leaves = others.map((other) => found(octree.leaves, other));
+  const { places } = joined(await sortedOf(folder, leaves, around(tile, AROUND)), []);
+  const own = files.reduce((sum, [, points]) => sum + points, 0);
+  const { count: most, points: each } = 'tolerance' in options.target ? TOLERANCE_SAMPLES : SAMPLES;
+  const count = Math.ceil(most / tasks.filter(({ stage }) => stage === 'measure').length);
   /** @type {{ indices: Uint32Array, range: number[] }[]} */
-  const samples = await withModule('tiles', folder.signal, (ask) => ask({ call: 'sampleTile', args: [tile, places, count] }));
+  const samples = await withModule('tiles', folder.signal, (ask) => ask({ call: 'sampleTile', args: [tile, places, count, each] }));
   const blocks = samples.map(({ indices, range }) => {
     const { places: some } = selected({ places, names: [], values: [] }, indices);
-    const points = places.length / 3 / samples.length;
+    const points = own / samples.length;
     return encode({ places: some, names: [], values: [], more: { range, points } });
   });
   await folder.write(samplePath(tile), Buffer.concat(blocks));
@@ -199,9 +211,9 @@ export async function density(folder) {
  */
 export async function make(folder, tile) {
   const made = await planOf(folder);
-  const { around } = found(made.octree.leaves, tile);
-  const files = around.flatMap((other) => found(made.octree.leaves, other).files.map(([input]) => sortedPath(input, other)));
-  await reduced(folder, made, found(made.octree.leaves, tile), files);
+  const planned = found(made.octree.leaves, tile);
+  const leaves = planned.around.map((other) => found(made.octree.leaves, other));
+  await reduced(folder, made, planned, (range) => sortedOf(folder, leaves, range));
 }
 
 /**
@@ -212,18 +224,18 @@ export async function make(folder, tile) {
 export async function level(folder, tile) {
   const made = await planOf(folder);
   const planned = found(made.octree.inner, tile);
-  await reduced(folder, made, planned, planned.around.map(madePath));
+  await reduced(folder, made, planned, async (range) => (await blocksOf(folder, planned.around.map(madePath))).map((block) => inRange(block, range)));
 }
 
-/** @param {Folder} folder @param {Plan} plan @param {Planned} planned @param {string[]} files */
-async function reduced(folder, { octree, options, names }, { tile, level: of }, files) {
+/** @param {Folder} folder @param {Plan} plan @param {Planned} planned @param {(range: number[]) => Promise<Columns[]>} points those of a range of the root's lattice */
+async function reduced(folder, { octree, options, names }, { tile, level: of }, points) {
   const measures = await folder.json(DENSITY);
   const carried = Object.fromEntries(names.map((name) => [name, options.attributes[name] ?? (name === 'classification' ? 'majority' : 'mean')]));
   const result = await withModule('tiles', folder.signal, async (ask) => {
     /** @type {number[]} */
     const range = await ask({ call: 'tileSurroundings', args: [tile, of, octree, measures] });
-    const given = joined(await blocksOf(folder, files, range), names);
-    return ask({ call: 'reduceTile', args: [given, tile, of, octree, measures, { attributes: carried }] });
+    const given = joined(await points(range), names);
+    return ask({ call: 'reduceTile', args: [given, tile, of, octree, measures, { attributes: carried, outliers: options.outliers }] });
   });
   /** @type {Columns} */
   const made = { names, ...result };
@@ -297,7 +309,7 @@ export async function finish(folder) {
     version: VERSION,
     made: made.made,
     options,
-    inputs,
+    inputs: byFile(inputs).map((parts) => ({ name: parts[0].name, bytes: total(parts, 'bytes'), points: total(parts, 'points') })),
     points: inputs.reduce((sum, { points }) => sum + points, 0),
     strays: octree.strays,
     reduced: leaves.reduce((sum, { points }) => sum + points, 0),
@@ -305,34 +317,37 @@ export async function finish(folder) {
     ...(levels.length > 0 && { triangles: facts.filter(({ level }) => level === made.finest).reduce((sum, { triangles = 0 }) => sum + triangles, 0) }),
     spacing: measures.target,
     noise: measures.noise,
+    ...(measures.tolerance && { tolerance: measures.tolerance }),
     files,
   });
 }
 
-/**
- * The points of files; where a range is given, those in it.
- * @param {Folder} folder @param {string[]} files @param {ArrayLike<number>} [range] lower corner, and the first place beyond
- */
-async function blocksOf(folder, files, range) {
+/** @param {Plan['inputs']} parts @param {'bytes' | 'points'} what */
+function total(parts, what) {
+  return parts.reduce((sum, part) => sum + part[what], 0);
+}
+
+/** The points of files. @param {Folder} folder @param {string[]} files */
+async function blocksOf(folder, files) {
   const blocks = [];
-  for (const file of files) {
-    const read = decode(await folder.read(file));
-    blocks.push(...(range ? read.map((block) => inRange(block, range)) : read));
-  }
+  for (const file of files) blocks.push(...decode(await folder.read(file)));
   return blocks;
 }
 
-/** @param {Columns} columns @param {ArrayLike<number>} range @returns {Columns} */
-function inRange(columns, range) {
-  const { places } = columns;
-  const [x0, y0, z0, x1, y1, z1] = Array.from(range);
-  const indices = new Uint32Array(places.length / 3);
-  let inside = 0;
-  for (let i = 0; i < places.length; i += 3) {
-    const [x, y, z] = [places[i], places[i + 1], places[i + 2]];
-    if (x >= x0 && x < x1 && y >= y0 && y < y1 && z >= z0 && z < z1) indices[inside++] = i / 3;
+/**
+ * The sorted points of leaves, and where a range is given those in it.
+ * @param {Folder} folder @param {Pick<Planned, 'tile' | 'files'>[]} leaves @param {ArrayLike<number>} [range]
+ */
+async function sortedOf(folder, leaves, range) {
+  const blocks = [];
+  for (const { tile, files } of leaves) {
+    for (const [input] of files) {
+      const path = sortedPath(input, tile);
+      await folder.expect(path);
+      blocks.push(...(await readCells(folder.at(path), tile, range)));
+    }
   }
-  return inside === indices.length ? columns : selected(columns, indices.subarray(0, inside));
+  return blocks;
 }
 
 /** @param {Planned[]} tiles @param {string} tile */

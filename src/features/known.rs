@@ -10,6 +10,14 @@ use glam::Vec3;
 /// Of a point in the octree's order its unit normal, of any sign; zero where it is not known.
 pub(crate) type Normals<'a> = dyn Fn(usize) -> Vec3 + Sync + 'a;
 
+/// What is known of points before they are measured, by their places in the octree.
+pub(crate) struct Clues<'a> {
+    /// From where a point was seen.
+    pub(crate) eye: &'a (dyn Fn(usize) -> Option<Vec3> + Sync),
+    /// Its normal.
+    pub(crate) normal: Option<&'a Normals<'a>>,
+}
+
 /// Cosine of the largest angle between a known normal and the filtered plane's, 26°. Beyond it one of them is of another face: at 60° true
 /// normals of a part with creases make its surface four times as bad.
 const ACROSS: f32 = 0.9;

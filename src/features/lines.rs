@@ -44,6 +44,20 @@ const AROUND: usize = 4;
 /// Cosine of the largest turn between a point's normal and those that tell it: 60°.
 const SAME_SIDE: f32 = 0.5;
 
+/// Whether a scan has lines, of whose points so many are on them.
+pub(crate) fn are_there(on_lines: f32, points: f32) -> bool {
+    on_lines >= LINES.0 * points
+}
+
+/// What is known of the lines of a scan, in the unit frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lines {
+    /// Noise and median spacing of the places.
+    pub(crate) places: (f32, f32),
+    /// Share of the points that are on lines.
+    pub(crate) share: f32,
+}
+
 /// The points of a cloud by places.
 #[derive(Debug)]
 pub(crate) struct Thinned {
@@ -58,13 +72,18 @@ pub(crate) struct Thinned {
 impl Thinned {
     /// `None` where there are no lines.
     pub(crate) fn of(tree: &Octree) -> Option<Thinned> {
+        let (on_lines, asked) = Thinned::asked(tree);
+        are_there(on_lines as f32, asked as f32).then(|| Thinned::along_lines(tree))
+    }
+
+    /// How many points are on lines, and of how many that is said.
+    pub(crate) fn asked(tree: &Octree) -> (usize, usize) {
         let n = tree.points.len();
         let step = n.div_ceil(ASKED).max(1);
         let some = par::map(n.div_ceil(step), Vec::new, |i, found| {
             reach(tree, i * step, found).is_some_and(|(k, _)| k > LINES.1)
         });
-        let on_lines = some.iter().filter(|&&is| is).count() as f32;
-        (on_lines >= LINES.0 * some.len() as f32).then(|| Thinned::along_lines(tree))
+        (some.iter().filter(|&&is| is).count(), some.len())
     }
 
     /// The places of a cloud that has lines.

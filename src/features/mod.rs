@@ -43,8 +43,8 @@ use crate::cloud::copies::{copied, copies};
 use crate::cloud::neighborhood::CELL;
 use crate::cloud::octree::Octree;
 use crate::features::filter::{Filter, Sums};
-use crate::features::known::Normals;
-use crate::features::lines::Thinned;
+use crate::features::known::{Clues, Normals};
+use crate::features::lines::{Lines, Thinned};
 use crate::features::noise::Scales;
 use crate::features::planes::{Plane, Planes};
 use glam::Vec3;
@@ -52,18 +52,22 @@ use std::ops::Range;
 
 pub use crate::features::values::Features;
 
-/// What is known of points before they are measured, by their places in the octree.
-pub(crate) struct Known<'a> {
-    /// From where a point was seen.
-    pub(crate) eye: &'a (dyn Fn(usize) -> Option<Vec3> + Sync),
-    /// Its normal.
-    pub(crate) normal: Option<&'a Normals<'a>>,
+/// What is known of a scan before a part of it is measured, in the unit frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Known {
+    /// Noise across the surface, and the part of it that comes from rounded coordinates.
+    pub(crate) noise: f32,
+    pub(crate) steps: f32,
+    /// Median spacing.
+    pub(crate) spacing: f32,
+    /// Of scan lines, where there are some.
+    pub(crate) lines: Option<Lines>,
 }
 
 impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
-        let unknown = Known {
+        let unknown = Clues {
             eye: &|_| None,
             normal: None,
         };
@@ -73,12 +77,12 @@ impl Features {
     /// [`Features::measure`] of points of which more is known.
     pub(crate) fn measure_known(
         tree: &Octree,
-        known: &Known,
+        known: &Clues,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         Features::of_places(tree, progress, |places, point, progress| {
             let normal = known.normal.map(|of| move |k| of(point(k)));
-            let of_places = Known {
+            let of_places = Clues {
                 eye: &|k| (known.eye)(point(k)),
                 normal: normal.as_ref().map(|of| of as &Normals),
             };
@@ -86,16 +90,29 @@ impl Features {
         })
     }
 
-    /// [`Features::measure`] of a part of a scan whose noise and spacing are known, in the unit frame: what is measured of a point
-    /// follows from the points around it alone. Scan lines and steps are not looked for.
+    /// [`Features::measure`] of a part of a scan of which some things are known: what is measured of a point follows from the points
+    /// around it alone.
     pub(crate) fn measure_part(
         tree: &Octree,
-        (noise, spacing): (f32, f32),
+        known: &Known,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
-        Features::of_places(tree, progress, |places, _, progress| {
+        let of = |tree: &Octree, (noise, spacing), progress: &mut dyn Progress| {
             let scales = Scales::new(noise, spacing);
-            Features::measure_by(places, &scales, |_| noise, None, progress)
+            let measured = Features::measure_by(tree, &scales, |_| noise, None, progress)?;
+            let steps = known.steps;
+            Ok(Features { steps, ..measured })
+        };
+        Features::of_places(tree, progress, |tree, _, progress| {
+            let Some(lines) = &known.lines else {
+                return of(tree, (known.noise, known.spacing), progress);
+            };
+            let thinned = Thinned::along_lines(tree);
+            let places = Octree::build(&thinned.places);
+            let measured = of(&places, lines.places, progress)?;
+            let features = thinned.features((tree, known.noise), (&places, &measured));
+            let lines = lines.share;
+            Ok(Features { lines, ..features })
         })
     }
 
@@ -141,7 +158,7 @@ impl Features {
 
     fn measure_distinct(
         tree: &Octree,
-        known: &Known,
+        known: &Clues,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         let steps = steps::noise(tree, known.eye);

@@ -72,20 +72,46 @@ enum Lie {
 /// # Errors
 /// [`crate::Error::Cancelled`].
 pub fn isolated(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> Result<Vec<bool>> {
+    isolated_by(tree, (noise, f32::INFINITY), progress)
+}
+
+/// [`isolated`] of a part of a scan with this noise and median spacing, which may have no surface in it.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(crate) fn isolated_part(
+    tree: &Octree,
+    (noise, spacing): (f32, f32),
+    progress: &mut dyn Progress,
+) -> Result<Vec<bool>> {
+    let disc = ((CLUMP - 1) as f32 / std::f32::consts::PI).sqrt();
+    isolated_by(tree, (noise, REACH * disc * spacing), progress)
+}
+
+/// `usual` is the reach of points on a surface where there is none.
+fn isolated_by(
+    tree: &Octree,
+    (noise, usual): (f32, f32),
+    progress: &mut dyn Progress,
+) -> Result<Vec<bool>> {
     // Copies of a point are no friends: one of each is looked at.
     let copies: Vec<Range<usize>> = copies(&tree.points);
     if copies.len() == tree.points.len() {
-        return isolated_distinct(tree, noise, progress);
+        return isolated_distinct(tree, (noise, usual), progress);
     }
     let distinct: Vec<Vec3> = copies.iter().map(|c| tree.points[c.start]).collect();
-    let one = isolated_distinct(&Octree::build(&distinct), noise, progress)?;
+    let one = isolated_distinct(&Octree::build(&distinct), (noise, usual), progress)?;
     let each = copies.iter().zip(one);
     Ok(each
         .flat_map(|(c, isolated)| c.clone().map(move |_| isolated))
         .collect())
 }
 
-fn isolated_distinct(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> Result<Vec<bool>> {
+fn isolated_distinct(
+    tree: &Octree,
+    (noise, usual): (f32, f32),
+    progress: &mut dyn Progress,
+) -> Result<Vec<bool>> {
     let n = tree.points.len();
     let mut part = Part::new(progress, 0.0..0.3);
     let reach = par::map_progress(
@@ -116,7 +142,7 @@ fn isolated_distinct(tree: &Octree, noise: f32, progress: &mut dyn Progress) -> 
             lie(tree, i, found, reach[i], noise)
         },
     )?;
-    let settled = settled(tree, &lie, &reach);
+    let settled = settled(tree, &lie, (&reach, usual));
     Ok(par::map(n, Vec::new, |i, found: &mut Vec<Neighbor>| {
         if settled[i] {
             return false;
@@ -156,15 +182,18 @@ fn lie(tree: &Octree, i: usize, friends: &[Neighbor], reach: f32, noise: f32) ->
 }
 
 /// Which points are settled: step 2.
-fn settled(tree: &Octree, lie: &[Lie], reach: &[f32]) -> Vec<bool> {
+fn settled(tree: &Octree, lie: &[Lie], (reach, usual): (&[f32], f32)) -> Vec<bool> {
     let on_sheets: Vec<usize> = (0..lie.len())
         .filter(|&i| matches!(lie[i], Lie::Flat | Lie::Sheet))
         .collect();
     let points: Vec<Vec3> = on_sheets.iter().map(|&i| tree.points[i]).collect();
     let sheets = Octree::build(&points);
     par::map(lie.len(), Vec::new, |i, found: &mut Vec<Neighbor>| {
-        if lie[i] == Lie::Few || lie[i] == Lie::Flat || points.is_empty() {
-            return lie[i] != Lie::Few;
+        if lie[i] == Lie::Few || lie[i] == Lie::Flat {
+            return lie[i] == Lie::Flat;
+        }
+        if points.is_empty() {
+            return reach[i] <= SPARSE * usual;
         }
         sheets.knn(tree.points[i], SHEET, found);
         let reach_of = |f: &Neighbor| reach[on_sheets[sheets.order[f.index as usize] as usize]];

@@ -7,6 +7,7 @@
 //! The records of a LAS file are read as they come. A LAZ file is kept until all of it is there, and unpacked chunk by
 //! chunk. Variable length records are passed over but for LASzip's own, so that a wrong count of them does no harm.
 
+mod chunks;
 mod crs;
 mod fields;
 mod header;
@@ -19,6 +20,7 @@ use super::parser::{Parser, Step};
 use super::table::Table;
 use crate::base::error::Result;
 use crate::cloud::Crs;
+pub use chunks::chunks;
 use header::{HEADER, Header};
 use laz::Laz;
 

@@ -79,6 +79,8 @@ pub use block::{Block, ColorValues, Verdict};
 pub use detect::detect;
 pub use faces::{FaceMode, Picture, Sampling, Want};
 pub use format::Format;
+#[cfg(feature = "las")]
+pub use las::chunks as laz_chunks;
 pub use options::ReadOptions;
 #[cfg(feature = "packed")]
 pub use packed::{Archive, Entry};

@@ -89,6 +89,18 @@ pub fn unpack(part: usize) -> Result<Uint8Array, JsValue> {
     })
 }
 
+/// [`crate::formats::laz_chunks`]: points and bytes of each chunk, one after the other, or nothing.
+#[cfg(feature = "las")]
+#[wasm_bindgen(js_name = lazChunks)]
+pub fn laz_chunks(head: &[u8], size: f64) -> Result<Option<Vec<f64>>, JsValue> {
+    let found = crate::formats::laz_chunks(head, size as u64)?;
+    let numbers = |each: Vec<(u64, u64)>| {
+        let pairs = each.iter().flat_map(|&(points, bytes)| [points, bytes]);
+        pairs.map(|x| x as f64).collect()
+    };
+    Ok(found.map(numbers))
+}
+
 /// The next bytes.
 #[wasm_bindgen(js_name = readPush)]
 pub fn read_push(bytes: &[u8]) -> JsResult {

@@ -7,7 +7,7 @@ use crate::js::progress::JsProgress;
 use crate::js::values::{JsOption, to_js};
 use crate::js::{JsResult, object, optional};
 use crate::tiles::points::Splitter;
-use crate::tiles::{self, Aim, Counts, Grid, Measures, Plan, Points, Sample, Tile, measures};
+use crate::tiles::{self, Aim, Counts, Grid, Measures, Plan, Points, Sample, Tile, samples};
 use js_sys::{Array, Float32Array, Float64Array, Function, Reflect, Uint8Array, Uint32Array};
 use serde::Serialize;
 use std::cell::RefCell;
@@ -151,10 +151,15 @@ pub fn split_points(positions: JsValue) -> JsResult {
     ])
 }
 
-/// [`measures::samples`] of a leaf's places: `{ indices, range }` of each.
+/// [`samples::samples`] of a leaf's places, so many of so many points: `{ indices, range }` of each.
 #[wasm_bindgen(js_name = sampleTile)]
-pub fn sample_tile(name: &str, places: &Uint32Array, count: usize) -> Result<Array, JsValue> {
-    let samples = measures::samples(tile(name)?, &triples(places), count);
+pub fn sample_tile(
+    name: &str,
+    places: &Uint32Array,
+    count: usize,
+    points: usize,
+) -> Result<Array, JsValue> {
+    let samples = samples::samples(tile(name)?, &triples(places), (count, points));
     let each = samples.iter().map(|(indices, range)| {
         let range = range
             .as_flattened()
@@ -168,7 +173,8 @@ pub fn sample_tile(name: &str, places: &Uint32Array, count: usize) -> Result<Arr
     each.collect()
 }
 
-/// [`tiles::measure`] of an array of samples, with `{ ratio, count or spacing }` and `{ curvatureWeight }` of a reduction: the [`Measures`].
+/// [`tiles::measure`] of an array of samples, with `{ ratio, count, spacing or tolerance }` and `{ curvatureWeight }` of a reduction: the
+/// [`Measures`].
 #[wasm_bindgen(js_name = measureTiles)]
 pub fn measure_tiles(
     samples: Vec<TileSample>,
@@ -192,7 +198,8 @@ pub fn measure_tiles(
     let aim = match (field("ratio")?, field("count")?, field("spacing")?) {
         (Some(ratio), ..) => Aim::Ratio(ratio),
         (_, Some(count), _) => Aim::Count(count),
-        (.., spacing) => Aim::Spacing(spacing.unwrap_or_default()),
+        (.., Some(spacing)) => Aim::Spacing(spacing),
+        _ => Aim::Tolerance(field("tolerance")?.unwrap_or_default()),
     };
     let weight = ReduceParams::given(&JsOption(options))?.curvature_weight;
     let progress = &mut JsProgress(progress);
@@ -217,7 +224,7 @@ pub fn tile_surroundings(
     Ok(range.as_flattened().iter().map(|&x| x as f64).collect())
 }
 
-/// [`tiles::reduce::reduce`] of a tile by its name, on its level; `options` are `{ attributes }` of a reduction: `{ places, colors,
+/// [`tiles::reduce::reduce`] of a tile by its name, on its level; `options` are `{ attributes, outliers }` of a reduction: `{ places, colors,
 /// values }`, values in the order of the names that came in.
 #[wasm_bindgen(js_name = reduceTile)]
 pub fn reduce_tile(
@@ -230,7 +237,7 @@ pub fn reduce_tile(
     progress: Function,
 ) -> JsResult {
     let measures = read_measures(measures)?;
-    let attributes = ReduceParams::given(&JsOption(options))?.attributes;
+    let options = ReduceParams::given(&JsOption(options))?;
     let scalars = points.names().into_iter().zip(points.values());
     let given = Points {
         places: triples(&points.places()),
@@ -247,7 +254,7 @@ pub fn reduce_tile(
     };
     let of = (tile(name)?, level);
     let whole = (read_grid(grid), &measures);
-    let made = tiles::reduce::reduce(&given, of, whole, &attributes, &mut JsProgress(progress))?;
+    let made = tiles::reduce::reduce(&given, of, whole, &options, &mut JsProgress(progress))?;
     let values: Array = made
         .attributes
         .iter()

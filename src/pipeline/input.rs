@@ -5,8 +5,9 @@ use crate::base::params::{COLORS, Outliers, ReduceParams};
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
+use crate::features::Features;
+use crate::features::known::Clues;
 use crate::features::outliers;
-use crate::features::{Features, Known};
 use crate::reduce::Reduced;
 use glam::Vec3;
 use std::borrow::Cow;
@@ -38,7 +39,7 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
         Some(normals) => normals[tree.order[i] as usize],
         None => Vec3::ZERO,
     };
-    let known = Known {
+    let known = Clues {
         eye: &eye,
         normal: cloud.normals.is_some().then_some(&own),
     };

@@ -20,12 +20,12 @@ use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
 use crate::reduce::law::{Law, Patch};
-use crate::reduce::walls;
+use crate::reduce::walls::{self, WallShare};
 
 /// Largest growth of the spacing per length along the surface.
 const GRADING: f32 = 0.2;
 /// Largest spacing with a tolerance as the target, a fraction of the diagonal: a plane needs more than its corners.
-const WIDEST: f64 = 0.05;
+pub(crate) const WIDEST: f64 = 0.05;
 /// Smallest spacing, about the resolution of the octree's keys.
 const SMALLEST: f32 = 1e-6;
 /// Points whose curvature is averaged.
@@ -69,19 +69,36 @@ impl Density {
         density
     }
 
-    /// The density of a part of a scan, by the `law` and the `scale` of the whole: what it is at a point follows from the surface
-    /// around it alone. Thin walls are not looked for.
-    pub(crate) fn of_part(tree: &Octree, features: &Features, law: &Law, scale: f64) -> Density {
+    /// The density of a part of a scan, by the law, the scale and the walls of the whole: what it is at a point follows from the
+    /// surface around it alone.
+    pub(crate) fn of_part(
+        tree: &Octree,
+        features: &Features,
+        (law, scale): (&Law, f64),
+        walls: Option<WallShare>,
+    ) -> Density {
         let relative = relative_spacing(tree, features, law);
         let unit = 1.0 / scale.sqrt();
-        let share = deserved(features, &relative).map(|d| (d * scale).min(1.0) as f32);
-        Density {
+        let deserved: Vec<f64> = deserved(features, &relative).collect();
+        let share = deserved.iter().map(|d| (d * scale).min(1.0) as f32);
+        let mut density = Density {
             share: share.collect(),
             spacing: relative
                 .iter()
                 .map(|&h| (f64::from(h) * unit) as f32)
                 .collect(),
+        };
+        if let Some(walls) = walls {
+            let Density { spacing, share } = &mut density;
+            let floor = walls::all_floors(tree, features, |i| spacing[i]);
+            let new = |k: usize| {
+                let floor = walls::raised(f64::from(share[k]), floor[k], walls.allowed);
+                (deserved[k] * walls.scale).min(1.0).max(floor)
+            };
+            let new: Vec<f64> = (0..floor.len()).map(new).collect();
+            walls::set(&new, (spacing, share));
         }
+        density
     }
 
     /// The number of reduced points that the shares add up to, rounded up.
@@ -114,11 +131,10 @@ impl<'a> CurvatureSpacing<'a> {
         }
     }
 
-    /// The density of a piecewise linear surface whose chords are off by `chord`: one of length h over curvature κ is off by
-    /// κh²/8, so h = √(8 chord/κ), at most [`WIDEST`].
+    /// The density of a piecewise linear surface whose chords are off by `chord`, with a spacing of at most [`WIDEST`].
     pub fn within(&self, chord: f64) -> Density {
-        let reach = |k: &f64| (8.0 * chord / k.max(f64::MIN_POSITIVE)).sqrt().min(WIDEST) as f32;
-        let wanted = self.groups.curvature.iter().map(reach).collect();
+        let widest = WIDEST;
+        let wanted = self.groups.wanted(&Law::Chords { chord, widest });
         let spacing = self.groups.spread(self.tree, wanted);
         let share = deserved(self.features, &spacing)
             .map(|d| d.min(1.0) as f32)
@@ -177,14 +193,9 @@ pub(crate) fn local_quotas(
 }
 
 /// The spacing at every point by the law, at the scale 1.
-fn relative_spacing(tree: &Octree, features: &Features, law: &Law) -> Vec<f32> {
+pub(crate) fn relative_spacing(tree: &Octree, features: &Features, law: &Law) -> Vec<f32> {
     let groups = Groups::new(tree, features);
     groups.spread(tree, groups.wanted(law))
-}
-
-/// Reduced points that the patch of every point deserves by the law, at the scale 1.
-pub(crate) fn deserved_by(tree: &Octree, features: &Features, law: &Law) -> Vec<f64> {
-    deserved(features, &relative_spacing(tree, features, law)).collect()
 }
 
 /// The patches of the surface of which curvature is known, each with the middle of its points.
@@ -219,7 +230,10 @@ pub(crate) fn scale_to(deserved: &[f64], weight: impl Fn(usize) -> f64, count: f
 }
 
 /// Reduced points of spacing h that the patch of every point deserves: its area over h².
-fn deserved<'a>(features: &'a Features, spacing: &'a [f32]) -> impl Iterator<Item = f64> + 'a {
+pub(crate) fn deserved<'a>(
+    features: &'a Features,
+    spacing: &'a [f32],
+) -> impl Iterator<Item = f64> + 'a {
     let patch = features.spacing.iter().zip(spacing);
     patch.map(|(&s, &h)| (f64::from(s) / f64::from(h)).powi(2))
 }

@@ -4,6 +4,8 @@
 //!    against the rms error 2/3 (Clark, *Proc. SIGGRAPH* 1976 onwards; d'Azevedo and Simpson, 1991); α = ½ was the best
 //!    measured, because κ is an estimate.
 //! 2. Bounds keep flat parts from starving and noise from gathering all points: [`FINEST`], [`COARSEST`].
+//!
+//! With a tolerance as the target chords of a linear surface are equally wrong everywhere: [`Law::Chords`].
 
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +27,25 @@ pub(crate) struct Patch {
     pub(crate) weight: f64,
 }
 
-/// The spacing that a curvature asks for: its mean over the surface is that of the groups that the law was
-/// found from.
+/// The spacing that a curvature asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Law {
+#[serde(rename_all = "camelCase")]
+pub enum Law {
+    /// A share of the points.
+    Share(Share),
+    /// Chords of a piecewise linear surface that are off by `chord`: one of length h over curvature κ is off by κh²/8.
+    #[serde(rename_all = "camelCase")]
+    Chords {
+        /// In the lengths' unit.
+        chord: f64,
+        /// Largest spacing.
+        widest: f64,
+    },
+}
+
+/// A law whose mean over the surface is the spacing of the groups that it was found from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Share {
     /// α.
     alpha: f64,
     /// Mean curvature of the surface, in the inverse of the lengths' unit.
@@ -40,8 +57,53 @@ pub struct Law {
 }
 
 impl Law {
-    /// The law of a surface.
+    /// The law of a surface that gives a share of its points.
     pub(crate) fn of(patches: &[Patch], alpha: f64) -> Law {
+        Law::Share(Share::of(patches, alpha))
+    }
+
+    /// The wanted spacing where the surface is so curved.
+    pub(crate) fn spacing(&self, curvature: f64) -> f32 {
+        match self {
+            Law::Share(share) => share.spacing(curvature),
+            Law::Chords { chord, widest } => (8.0 * chord / curvature.max(f64::MIN_POSITIVE))
+                .sqrt()
+                .min(*widest) as f32,
+        }
+    }
+
+    /// The same law for groups that are `factor` times as far apart.
+    pub(crate) fn with_groups(self, factor: f64) -> Law {
+        match self {
+            Law::Share(share) => Law::Share(Share {
+                unit: share.unit * factor,
+                ..share
+            }),
+            Law::Chords { chord, widest } => Law::Chords {
+                chord: chord * factor * factor,
+                widest: widest * factor,
+            },
+        }
+    }
+
+    /// The same law where lengths are `factor` times as long.
+    pub(crate) fn scaled(self, factor: f64) -> Law {
+        match self {
+            Law::Share(share) => Law::Share(Share {
+                typical: share.typical / factor,
+                unit: share.unit * factor,
+                ..share
+            }),
+            Law::Chords { chord, widest } => Law::Chords {
+                chord: chord * factor,
+                widest: widest * factor,
+            },
+        }
+    }
+}
+
+impl Share {
+    fn of(patches: &[Patch], alpha: f64) -> Share {
         let area = |patch: &Patch| patch.area * patch.weight;
         let total = patches.iter().map(area).sum::<f64>().max(f64::MIN_POSITIVE);
         let mean = |values: &mut dyn Iterator<Item = f64>| {
@@ -49,7 +111,7 @@ impl Law {
             weighted.sum::<f64>() / total
         };
         let weight: f64 = patches.iter().map(|patch| patch.weight).sum();
-        let mut law = Law {
+        let mut law = Share {
             alpha,
             typical: mean(&mut patches.iter().map(|patch| patch.curvature)),
             means: [1.0; 2],
@@ -63,7 +125,7 @@ impl Law {
         for i in 0..law.means.len() {
             law.means[i] = mean(&mut spacing.iter().copied());
             for h in &mut spacing {
-                *h = Law::bounded(*h, law.means[i]);
+                *h = Share::bounded(*h, law.means[i]);
             }
         }
         law
@@ -83,8 +145,7 @@ impl Law {
         (h / mean).clamp(f64::from(FINEST), f64::from(COARSEST))
     }
 
-    /// The wanted spacing where the surface is so curved.
-    pub(crate) fn spacing(&self, curvature: f64) -> f32 {
+    fn spacing(&self, curvature: f64) -> f32 {
         if self.is_even() {
             return self.unit as f32;
         }
@@ -92,24 +153,7 @@ impl Law {
         (self
             .means
             .iter()
-            .fold(asked, |h, &mean| Law::bounded(h, mean))
+            .fold(asked, |h, &mean| Share::bounded(h, mean))
             * self.unit) as f32
-    }
-
-    /// The same law for groups that are `factor` times as far apart.
-    pub(crate) fn with_groups(self, factor: f64) -> Law {
-        Law {
-            unit: self.unit * factor,
-            ..self
-        }
-    }
-
-    /// The same law where lengths are `factor` times as long.
-    pub(crate) fn scaled(self, factor: f64) -> Law {
-        Law {
-            typical: self.typical / factor,
-            unit: self.unit * factor,
-            ..self
-        }
     }
 }

@@ -58,6 +58,7 @@ use crate::reduce::stats::stats;
 use crate::reduce::surroundings::Surroundings;
 
 pub use crate::reduce::stats::ReduceStats;
+pub use crate::reduce::walls::WallShare;
 
 /// A reduced cloud. Every array but `assignment` and `cells` has one entry a reduced point.
 #[derive(Debug, Clone)]
@@ -109,6 +110,8 @@ pub(crate) struct Whole<'a> {
     pub(crate) law: Law,
     /// Reduced points that the law's spacing stands for, where it says 1.
     pub(crate) scale: f64,
+    /// How thin walls are kept apart, where there are some.
+    pub(crate) walls: Option<WallShare>,
     /// Even in 0..1, of a point by its index in the cloud: the same whatever part it is in.
     pub(crate) chance: &'a dyn Fn(u32) -> f64,
 }
@@ -152,7 +155,8 @@ fn run(
     let (goal, reason) = match whole {
         None => job.goal(progress)?,
         Some(whole) => {
-            let density = Density::of_part(at, &job.features, &whole.law, whole.scale);
+            let density =
+                Density::of_part(at, &job.features, (&whole.law, whole.scale), whole.walls);
             (
                 Goal::Density(Quotas::Local(&chance), density),
                 String::new(),
@@ -306,7 +310,9 @@ impl Job<'_> {
             }
         };
         let n = self.tree.points.len();
-        let chord = tolerance::search(&self.features, tolerance, progress, |chord, progress| {
+        let noise = tolerance::removed_noise(&self.features);
+        let known = (noise, tolerance);
+        let chord = tolerance::search(known, progress, |chord, progress| {
             let goal = goal(chord);
             let plan = self.plan(&goal);
             let (clustering, index) = self.cluster(goal, progress)?;
@@ -320,7 +326,9 @@ impl Job<'_> {
             let normals: Vec<Vec3> = placed.iter().map(|p| p.normal).collect();
             let patches = Patches::fit(&Octree::build(&positions), &normals);
             let denoised = |k| self.features.denoised(self.tree, k);
-            cloud_distances(denoised, &clustering.shares, &patches, progress).map(Some)
+            let distances = cloud_distances(denoised, &clustering.shares, &patches, progress)?;
+            let area = |i: u32| f64::from(self.features.spacing[i as usize]).powi(2);
+            Ok(Some(tolerance::error(distances, area)))
         })?;
         Ok(goal(chord))
     }

@@ -30,7 +30,7 @@ const NOISE_FLOOR: f64 = 1.5;
 /// The tolerance that is aimed at, and why it is not the one that was asked for, where it is not.
 pub(crate) fn allowed(features: &Features, tolerance: f64) -> (f64, String) {
     let noise = removed_noise(features);
-    let least = NOISE_FLOOR * noise;
+    let least = least(noise);
     if tolerance >= least {
         return (tolerance, String::new());
     }
@@ -40,28 +40,36 @@ pub(crate) fn allowed(features: &Features, tolerance: f64) -> (f64, String) {
     (least, reason)
 }
 
+/// The least tolerance, with so much noise.
+pub(crate) fn least(noise: f64) -> f64 {
+    NOISE_FLOOR * noise
+}
+
 /// The noise, as far as the filter takes it for noise and not for the bend of coarsely sampled parts.
-fn removed_noise(features: &Features) -> f64 {
-    let scales = Scales::new(features.noise, features.median_spacing());
+pub(crate) fn removed_noise(features: &Features) -> f64 {
+    removed(features.noise, features.median_spacing())
+}
+
+/// [`removed_noise`] of a noise and a median spacing.
+pub(crate) fn removed(noise: f32, spacing: f32) -> f64 {
+    let scales = Scales::new(noise, spacing);
     f64::from(scales.noise * scales.denoise)
 }
 
-/// The chord to aim at. `distances` reduces the scan for a chord and measures how far every point is from the result, or
-/// says that all points would be kept.
+/// The chord to aim at, given what the filter removes of the noise, and the tolerance. `error` reduces the scan for a chord and
+/// measures how far most of it is from the result ([`error`]), or says that all points would be kept.
 pub(crate) fn search(
-    features: &Features,
-    tolerance: f64,
+    (noise, tolerance): (f64, f64),
     progress: &mut dyn Progress,
-    distances: impl Fn(f64, &mut dyn Progress) -> Result<Option<Vec<f32>>>,
+    error: impl Fn(f64, &mut dyn Progress) -> Result<Option<f64>>,
 ) -> Result<f64> {
-    let noise = LEFT * removed_noise(features);
+    let noise = LEFT * noise;
     let (mut within, mut beyond) = (0.0, f64::INFINITY);
     let mut chord = tolerance;
     for trial in 0..TRIALS {
         let done = |k: usize| DONE * k as f32 / TRIALS as f32;
         let mut part = Part::of(Stage::Cluster, progress, done(trial)..done(trial + 1));
-        let found = distances(chord, &mut part)?;
-        let error = found.map_or(0.0, |found| quantile(features, found, SURFACE));
+        let error = error(chord, &mut part)?.unwrap_or(0.0);
         let error = (error * error - noise * noise).max(0.0).sqrt() / tolerance;
         if error <= 1.0 {
             within = chord;
@@ -83,16 +91,15 @@ pub(crate) fn search(
     Ok(within)
 }
 
-/// What `share` of the surface is below, as every point stands for its area.
-fn quantile(features: &Features, distances: Vec<f32>, share: f64) -> f64 {
-    let area = |i: u32| f64::from(features.spacing[i as usize]).powi(2);
+/// How far [`SURFACE`] of a scan is from the result at most, by its points' distances and the areas that they stand for.
+pub(crate) fn error(distances: Vec<f32>, area: impl Fn(u32) -> f64) -> f64 {
     let parts = ranked(distances.into_iter().map(key));
     let parts = || parts.iter().map(|&part| unpack(part));
     let total: f64 = parts().map(|(_, i)| area(i)).sum();
     let mut below = 0.0;
     let last = parts().find(|&(_, i)| {
         below += area(i);
-        below >= share * total
+        below >= SURFACE * total
     });
     last.map_or(0.0, |(distance, _)| f64::from(of_key(distance)))
 }

@@ -4,7 +4,8 @@
 //! 1. [`counts`]: points are counted on a lattice, file by file; counts of several files add up.
 //! 2. [`plan`]: an octree over the lattice, whose leaves have at most so many points, and what each tile needs of others.
 //! 3. [`points`]: a file's points go to their leaves, as whole numbers on a lattice of the root tile ([`grid`]).
-//! 4. [`measures`]: samples of some leaves tell noise, spacing and the law of the density, once for the whole scan.
+//! 4. [`measuring`]: samples of some leaves ([`samples`]) tell noise, spacing, lines, steps, walls and the law of the density, once for
+//!    the whole scan ([`measures`]); for a tolerance they are reduced until they keep it (`tolerance`).
 //! 5. [`reduce`]: the points of a tile and those around it become the tile's reduced points: of a leaf from the scan, of a tile
 //!    above from the points of the tiles below.
 //!
@@ -24,13 +25,19 @@
 
 pub mod counts;
 pub mod grid;
+mod measured;
 pub mod measures;
+pub mod measuring;
 pub mod plan;
 pub mod points;
 pub mod reduce;
+pub mod samples;
+mod tolerance;
 
 pub use counts::Counts;
 pub use grid::{Grid, Tile};
-pub use measures::{Aim, Measures, Sample, measure};
+pub use measures::{Aim, Measures};
+pub use measuring::measure;
 pub use plan::{Leaf, Plan};
 pub use points::{Points, Split};
+pub use samples::Sample;

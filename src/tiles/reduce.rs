@@ -1,20 +1,20 @@
 //! One tile, reduced with its surroundings.
 
 use crate::base::error::Result;
-use crate::base::params::{Carry, ReduceParams};
+use crate::base::params::{Outliers, ReduceParams};
 use crate::base::progress::{Progress, Stage};
 use crate::base::rng::Rng;
 use crate::cloud::octree::Octree;
 use crate::cloud::{Cloud, Frame};
-use crate::features::Features;
+use crate::features::{Features, Known, outliers};
 use crate::reduce::{Reduced, Whole, reduce_part};
 use crate::tiles::grid::{BITS, Cube, Grid, Tile};
 use crate::tiles::measures::Measures;
 use crate::tiles::points::Points;
-use std::collections::BTreeMap;
 
 /// The points of a tile, one at least, at a level ([`crate::tiles::Plan::level`]), reduced from `points`: the scan's for level 0, else the reduced points
-/// of the tiles below; those of the tile and of what touches it. `attributes` say how scalars and colours are carried.
+/// of the tiles below; those of the tile and of what touches it. Of `options` those hold that say how scalars and colours are carried,
+/// and whether isolated points of the scan are dropped.
 ///
 /// # Errors
 /// [`crate::Error::BadOption`] (`attributes`), [`crate::Error::Cancelled`].
@@ -22,41 +22,46 @@ pub fn reduce(
     points: &Points,
     (tile, level): (Tile, u32),
     (grid, measures): (Grid, &Measures),
-    attributes: &BTreeMap<String, Carry>,
+    options: &ReduceParams,
     progress: &mut dyn Progress,
 ) -> Result<Points> {
     let rule = measures.rule(level);
     let cube = Cube::of(tile);
     let range = surroundings((tile, level), (grid, measures));
-    let points = points.select(&within(points, range));
-    if points.places.is_empty() {
-        return Ok(points);
+    let given = points.select(&within(points, range));
+    if given.places.is_empty() {
+        return Ok(given);
     }
     // The caller's unit of the unit frame's 1.
     let side = cube.side() * grid.step();
-    let cloud = cloud_of(&points, cube);
     progress.update(Stage::Octree, 0.0)?;
+    let known = rule.surface.known(side);
+    let points = match options.outliers {
+        Outliers::Drop if level == 0 => without_strays(&given, cube, &known, progress)?,
+        _ => given.clone(),
+    };
+    let cloud = cloud_of(&points, cube);
     let tree = Octree::build(&cloud.points);
     progress.update(Stage::Octree, 1.0)?;
-    let known = ((rule.noise / side) as f32, (rule.median / side) as f32);
-    let features = Features::measure_part(&tree, known, progress)?;
+    let features = Features::measure_part(&tree, &known, progress)?;
     let chance = |i: u32| chance(points.places[i as usize]);
     let whole = Whole {
         law: rule.law.scaled(1.0 / side),
         scale: rule.scale,
+        walls: rule.walls,
         chance: &chance,
     };
     let params = ReduceParams {
         cell_points: Some(rule.cell_points),
-        attributes: attributes.clone(),
+        attributes: options.attributes.clone(),
         ..ReduceParams::default()
     };
     let reduced = reduce_part((&cloud, &tree), features, &params, &whole, progress)?;
     let made = kept(reduced, places_in(cube, tile));
     if made.places.is_empty() {
         // All that stand for the tile's points lie beside it.
-        let first = points.places.iter().position(|&place| tile.holds(place));
-        return Ok(points.select(&first.map(|i| i as u32).into_iter().collect::<Vec<u32>>()));
+        let first = given.places.iter().position(|&place| tile.holds(place));
+        return Ok(given.select(&first.map(|i| i as u32).into_iter().collect::<Vec<u32>>()));
     }
     Ok(made)
 }
@@ -119,8 +124,26 @@ fn kept(reduced: Reduced, place: impl Fn(glam::Vec3) -> Option<[u32; 3]>) -> Poi
     all.select(&inside)
 }
 
+/// The points that are not isolated, and the first where all are.
+fn without_strays(
+    points: &Points,
+    cube: Cube,
+    known: &Known,
+    progress: &mut dyn Progress,
+) -> Result<Points> {
+    let tree = Octree::build(&cloud_of(points, cube).points);
+    let isolated = outliers::isolated_part(&tree, (known.noise, known.spacing), progress)?;
+    let each = tree.order.iter().zip(isolated);
+    let mut others: Vec<u32> = each.filter(|(_, is)| !is).map(|(&i, _)| i).collect();
+    others.sort_unstable();
+    if others.is_empty() {
+        others.push(0);
+    }
+    Ok(points.select(&others))
+}
+
 /// From 0 to 1, evenly: of a place, whatever tile asks.
-fn chance([x, y, z]: [u32; 3]) -> f64 {
+pub(super) fn chance([x, y, z]: [u32; 3]) -> f64 {
     let first = Rng::new(u64::from(x) << 32 | u64::from(y)).next_u64();
     Rng::new(first ^ u64::from(z)).uniform()
 }

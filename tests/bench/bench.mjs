@@ -1,4 +1,4 @@
-// `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads] [simplify] [texture]`: what Pointweave costs, in this process.
+// `cargo xtask bench [tables] [growth] [fcm] [peer] [surface] [threads] [simplify] [texture] [tiles]`: what Pointweave costs, in this process.
 //
 //   tables   the paper's Tables 1 and 2 on scans of the same size, beside the paper's seconds
 //   growth   the reduction of ten thousand to ten million points, a mesh of a hundred thousand to five million: time and
@@ -8,6 +8,7 @@
 //   surface  from points to a mesh beside Open3D: normals, their orientation, Poisson
 //   threads  one thread beside two, the same bytes
 //   simplify fewer triangles beside meshoptimizer's, Open3D's and PyMeshLab's: distances from one full mesh
+//   tiles    `pointweave tiles` beside py3dtiles and a voxel grid on one survey: size, error and time
 //   texture  5,000 triangles with pictures beside more of them with colours of vertices: how near the scan's colours and normals
 //
 // Times are medians of several runs; machines differ, so compare ratios.
@@ -24,6 +25,9 @@ const HERE = dirname(fileURLToPath(import.meta.url));
 const SHARED = process.env.POINTWEAVE_SHARED ?? resolve(HERE, '../../../shared');
 
 const RUNS = 3;
+
+/** `tiles`: points of the survey. */
+const TILES_POINTS = 1_000_000;
 
 /** Table 1 and Table 2 of the paper: points, seconds on an Intel Core 2 at 2.93 GHz. */
 const PAPER = {
@@ -43,7 +47,7 @@ const NEVER = Number.MIN_VALUE;
 /** Cells on which scikit-fuzzy is timed. */
 const TIMED_CELLS = 40;
 
-const benches = { tables, growth, fcm, peer, surface, threads, simplify, texture };
+const benches = { tables, growth, fcm, peer, surface, threads, simplify, texture, tiles };
 const asked = process.argv.slice(2);
 const unknown = asked.find((name) => !(name in benches));
 if (unknown !== undefined) {
@@ -250,6 +254,15 @@ async function simplify() {
 
 async function texture() {
   print('Colours and normals at the scan\'s points (pictures of 1024 texels; ms are those after the reconstruction)', await textureRows());
+}
+
+function tiles() {
+  const python = process.env.TILES_PYTHON;
+  if (!python) return;
+  const { stdout, stderr, status } = spawnSync(python, [join(HERE, 'tiles_peers.py'), resolve(HERE, '../../pkg/cli.js'), `${TILES_POINTS}`], { encoding: 'utf8' });
+  if (status !== 0) throw new Error(stderr);
+  const rows = JSON.parse(stdout).map(({ by, points, bytes, error, seconds }) => [by, points, (bytes / 1e6).toFixed(1), (1000 * error).toFixed(2), seconds.toFixed(1)]);
+  print('A survey with 10 mm of noise as a tileset: error of the surface at the finest level (two jobs each, numpy for the grid)', [['', 'points', 'MB', 'rms error, mm', 's'], ...rows]);
 }
 
 /** The last result and the median time of some runs after a first one. */

@@ -169,6 +169,22 @@ test('tiles of a mesh meet in every bit', async (t) => {
   assert.ok(open.filter((ends) => ends.some(inside)).length < 8, `${open.filter((ends) => ends.some(inside)).length}`);
 });
 
+test('a tolerance asks for fewer points where it is larger, and strays go where that is asked', async (t) => {
+  const path = folder(t);
+  const made = async (name, ...args) => JSON.parse((await good(path, 'scan', '-o', name, '--tile-points', '12000', '--json', ...args)).stdout);
+  const [fine, coarse] = [await made('fine', '--tolerance', '0.02'), await made('coarse', '--tolerance', '0.2')];
+  assert.deepEqual([fine.tolerance, coarse.tolerance], [0.02, 0.2]);
+  assert.ok(fine.reduced > 1.5 * coarse.reduced && coarse.reduced > 20 && fine.reduced < 24_000, `${fine.reduced} and ${coarse.reduced}`);
+  const strays = Array.from({ length: 60 }, (_, i) => `${ORIGIN[0] + (i * 37) % 100} ${ORIGIN[1] + (i * 61) % 100} ${ORIGIN[2] + 12 + (i % 7)}`);
+  writeFileSync(join(path, 'scan/strays.xyz'), `${strays.join('\n')}\n`);
+  const top = async (name, ...args) => {
+    await made(name, ...args);
+    return (await validateTileset(join(path, name))).box[1][2];
+  };
+  assert.ok((await top('kept')) > ORIGIN[2] + 10);
+  assert.ok((await top('dropped', '--outliers', 'drop')) < ORIGIN[2] + 6);
+});
+
 test('what goes wrong is said in a line, and what was done stays', async (t) => {
   const path = folder(t);
   writeFileSync(join(path, 'scan/2.laz'), halves[0].subarray(0, 3000));
@@ -187,7 +203,10 @@ test('what goes wrong is said in a line, and what was done stays', async (t) => 
     [['scan', '-o', 'x', '--ratio', '0.1', '--count', '3'], /--ratio and --count exclude each other/, 2],
     [['scan', '-o', 'x', '--spacing', '0'], /--spacing is '0': expected a number in/, 2],
     [['scan', '-o', 'x', '--mesh', '--spacing', '1'], /--mesh needs --ratio or --count/, 2],
+    [['scan', '-o', 'x', '--mesh', '--tolerance', '1'], /--mesh needs --ratio or --count/, 2],
+    [['scan', '-o', 'x', '--outliers', 'all'], /--outliers is 'all': expected keep or drop/, 2],
     [['scan', '-o', 'x', '--memory', '300MB'], /--tile-points \d+ fits/, 2],
+    [['scan', '-o', 'x', '--mesh', '--mesh-points', '3000000'], /a mesh through 3000000 points takes \d+ MB: --mesh-points \d+ fits/, 2],
     [['scan', '-o', 'x', '--memory', 'much'], /expected a size as 2GB or 900MB/, 2],
     [['make', '-o', 'out', '--tile', '0-0-0-0'], /the step that makes it has not run/, 1],
     [['list', '-o', 'out'], /the step that makes it has not run/, 1],
@@ -221,7 +240,7 @@ test('a plan says of every task what it needs and makes', () => {
     corner: [0, 0, 0], size: 1, strays: 0,
     leaves: [leaf(a, [[0, 10]], [a, b]), leaf(b, [[0, 4], [1, 5]], [a, b])],
     inner: [{ tile: '0-0-0-0', level: 1, files: [], around: [a, b] }],
-  });
+  }, { ratio: 0.5 });
   const made = new Set(['work/plan.json', 'work/counts/0.json', 'work/counts/1.json']);
   for (const { needs, makes } of tasks) {
     assert.ok(needs.every((name) => made.has(name)), `${needs}`);

@@ -66,6 +66,7 @@ fn bench_package(arguments: &[&String]) -> Result<()> {
     peer("surface", "OPEN3D_PYTHON", packages::open3d);
     peer("simplify", "SIMPLIFY_PYTHON", packages::simplify);
     peer("texture", "SIMPLIFY_PYTHON", packages::simplify);
+    peer("tiles", "TILES_PYTHON", packages::tiles);
     run(&mut bench, "a benchmark failed; its error is above")
 }
 

@@ -65,6 +65,11 @@ pub fn simplify() -> Result<PathBuf> {
     python("simplify", "Open3D and PyMeshLab")
 }
 
+/// A Python with what makes tilesets and what measures them.
+pub fn tiles() -> Result<PathBuf> {
+    python("tiles", "py3dtiles and what measures tilesets")
+}
+
 /// A Python with libraries of other people's for the formats of scans.
 pub fn formats() -> Result<PathBuf> {
     python("formats", "readers and writers of scans")

@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 from fsspec.core import split_protocol, url_to_fs
 
+from .cells import Box, copy_cells
 from .errors import PointweaveError
 
 T = TypeVar("T")
@@ -62,6 +63,24 @@ class Store:
                 tried(fs.get_file, f"{root}/{path}", str(local))
 
         _at_once(one, paths)
+
+    def fetch_cells(self, tiles: Mapping[str, str], box: Box, folder: Path) -> None:
+        """Brings of sorted points of tiles, by their paths, the blocks that meet a box. Files of a local store are linked."""
+        fs, root = self._open()
+        if is_local(fs):
+            self.fetch(tiles, folder)
+            return
+
+        def one(path: str) -> None:
+            remote, local = f"{root}/{path}", folder / path
+            local.parent.mkdir(parents=True, exist_ok=True)
+
+            def read(begin: int, end: int) -> bytes:
+                return bytes(tried(fs.cat_file, remote, start=begin, end=end))
+
+            copy_cells(read, tried(fs.size, remote), tiles[path], box, local)
+
+        _at_once(one, tiles)
 
     def put(self, paths: list[str], folder: Path) -> None:
         """Takes files from a local folder. The last one is put when all others are there: it stands for all of them."""

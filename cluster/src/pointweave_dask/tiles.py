@@ -14,6 +14,7 @@ from typing import Any
 from distributed import Client
 
 from . import npm
+from .cells import Box, neighbours, sampled, surroundings
 from .errors import PointweaveError
 from .graph import Job, Progress, run
 from .options import Flags, flags_of
@@ -24,6 +25,7 @@ from .store import ASIDE, StorageOptions, Store
 WORK = "work"
 INPUTS = f"{WORK}/inputs.json"
 PLAN = f"{WORK}/plan.json"
+DENSITY = f"{WORK}/density.json"
 TILESET, MANIFEST = "tileset.json", "manifest.json"
 
 
@@ -146,13 +148,30 @@ def _step(store: Store, task: dict[str, Any], scan: Scan | None) -> None:
     if store.has(task["makes"][-1]):
         return
     with scratch() as folder:
-        store.fetch(task["needs"], folder / "out")
+        _bring_needs(store, task, folder / "out")
         tile = [f"--tile={task['tile']}"] if "tile" in task else []
         given = [f"--input={scan.name}"] if scan is not None else []
         if scan is not None:
             bring(scan, store.options, folder / "in")
         _tiles(folder, task["stage"], *tile, *given)
         store.put(task["makes"], folder / "out")
+
+
+def _bring_needs(store: Store, task: dict[str, Any], folder: Path) -> None:
+    """What a task needs: of its neighbours' sorted points those that are near."""
+    around = neighbours(task)
+    store.fetch([path for path in task["needs"] if path not in around], folder)
+    if not around:
+        return
+    store.fetch_cells(around, _near(task, folder), folder)
+
+
+def _near(task: dict[str, Any], folder: Path) -> Box:
+    if task["stage"] == "measure":
+        return sampled(task["tile"])
+    octree = json.loads((folder / PLAN).read_text(encoding="utf-8"))["octree"]
+    reach = json.loads((folder / DENSITY).read_text(encoding="utf-8"))["reach"]
+    return surroundings(task["tile"], octree["size"], reach)
 
 
 def _tiles(folder: Path, *arguments: str) -> None:

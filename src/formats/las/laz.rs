@@ -97,7 +97,7 @@ impl Laz {
         let chunks = if layout == Layout::PointWise {
             None
         } else {
-            chunk_table(bytes, start, &vlr)
+            chunk_table((bytes, input.size), start, &vlr)
         };
         if layout == Layout::Chunked && vlr.uses_variable_size_chunks() && chunks.is_none() {
             return Err(input.bad_byte(start as u64, "the table of the chunks", "none"));
@@ -115,6 +115,21 @@ impl Laz {
             chunks,
             record: header.record,
         })
+    }
+
+    /// Points and bytes of each chunk, of so many points in all, where each can be read without the table.
+    pub(super) fn chunks_of(&self, points: u64) -> Option<Vec<(u64, u64)>> {
+        if self.layout == Layout::Chunked && self.vlr.uses_variable_size_chunks() {
+            return None;
+        }
+        let mut left = points;
+        let of = |entry: &laz::laszip::ChunkTableEntry| {
+            let points = entry.point_count.min(left);
+            left -= points;
+            (points, entry.byte_count)
+        };
+        let each: Vec<(u64, u64)> = self.chunks.as_ref()?.as_ref().iter().map(of).collect();
+        (left == 0).then_some(each)
     }
 
     /// Unpacks the next chunk, of the `left` points that are still to come; how many it held.
@@ -307,7 +322,7 @@ fn missing_record(header: &Header, input: &Input) -> Error {
 }
 
 /// The table of the chunks, where there is one that can be right.
-fn chunk_table(bytes: &[u8], start: usize, vlr: &LazVlr) -> Option<ChunkTable> {
+fn chunk_table((bytes, size): (&[u8], u64), start: usize, vlr: &LazVlr) -> Option<ChunkTable> {
     let number = |at: usize| Some(i64::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
     // A writer that could not go back has put the place at the end.
     let place = [number(start)?, number(bytes.len().checked_sub(8)?)?]
@@ -316,7 +331,7 @@ fn chunk_table(bytes: &[u8], start: usize, vlr: &LazVlr) -> Option<ChunkTable> {
     let place = usize::try_from(place).ok()?;
     let count = u32::from_le_bytes(*bytes.get(place.checked_add(4)?..)?.first_chunk()?);
     // Every chunk has a point in full.
-    if u64::from(count) > bytes.len() as u64 / 20 {
+    if u64::from(count) > size / 20 {
         return None;
     }
     let mut source = Cursor::new(bytes);
