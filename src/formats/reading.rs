@@ -9,7 +9,7 @@ use super::input::{Input, Place};
 use super::options::ReadOptions;
 use super::parser::{Parser, Step};
 use super::preview::Preview;
-use super::raw_cloud::{Positions, RawCloud};
+use super::raw_cloud::{Positions, RawCloud, Skin};
 use super::sentinels::LeftOut;
 use super::stations::Stations;
 use super::table::Table;
@@ -38,6 +38,8 @@ pub struct Reading {
     sampled: Sampling,
     /// The triangles, where they come along.
     indices: Vec<u32>,
+    /// The pictures on them.
+    skin: Option<Skin>,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
     /// What the parser has not taken yet, and where it starts.
@@ -95,6 +97,7 @@ impl Reading {
             triangles: 0,
             sampled: Sampling::default(),
             indices: Vec::new(),
+            skin: None,
             parser: None,
             table: None,
             kept: Vec::new(),
@@ -179,6 +182,12 @@ impl Reading {
         std::mem::take(&mut self.indices)
     }
 
+    /// The pictures on the triangles, and where the points are in them: those of a GLB whose triangles all wear the same; none unless
+    /// [`FaceMode::Mesh`] asks for them.
+    pub fn take_skin(&mut self) -> Option<Skin> {
+        self.skin.take()
+    }
+
     /// Puts points of the faces in the place of the vertices, or the triangles beside them.
     fn sample(&mut self) {
         let Some(faces) = self.faces.take().filter(|_| HAVE_FACES) else {
@@ -195,6 +204,8 @@ impl Reading {
             let mut table = Table::of(cloud);
             (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
             (self.indices, self.sampled) = (indices, sampled);
+            let skin = self.parser.as_mut().and_then(|parser| parser.take_skin());
+            self.skin = skin.filter(|skin| skin.uvs.len() as u64 == 2 * table.rows);
             self.table = Some(table);
             return;
         }
@@ -427,7 +438,10 @@ fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
         #[cfg(feature = "packed")]
         Format::ThreeMf => Box::new(super::packed::ThreeMf::new(faces())),
         #[cfg(feature = "packed")]
-        Format::Glb => Box::new(super::glb::Glb::new(faces())),
+        Format::Glb => Box::new(super::glb::Glb::new(
+            faces(),
+            options.faces == FaceMode::Mesh,
+        )),
         #[cfg(feature = "las")]
         Format::Las => Box::new(super::las::Las::default()),
         #[cfg(feature = "e57")]

@@ -1,5 +1,6 @@
-//! Colours of texels from the scan's points.
+//! Colours of texels from the scan's points, or the values that become colours.
 
+use super::Paint;
 use super::fill::Pixel;
 use super::texels::{Texels, in_parallel, mix, place};
 use crate::base::error::Result;
@@ -24,8 +25,8 @@ const PER_TASK: usize = 256;
 /// The scan's points where the full mesh has them.
 pub(super) struct Points<'a> {
     tree: Octree,
-    /// By place in the tree.
-    colors: Vec<[u8; 3]>,
+    /// By place in the tree: a colour, or a value three times.
+    shown: Vec<Pixel>,
     normals: Vec<Vec3>,
     /// Mean distance of neighbours.
     spacing: f64,
@@ -36,7 +37,7 @@ impl<'a> Points<'a> {
     /// `faces` is of the full mesh's triangles.
     pub(super) fn new(
         points: &[Vec3],
-        colors: &[[u8; 3]],
+        paint: &Paint,
         (full, faces): (&'a Mesh, &TriangleTree),
     ) -> Points<'a> {
         let tree = Octree::build(points);
@@ -57,7 +58,11 @@ impl<'a> Points<'a> {
             .map(|&t| full.cross(t).length() / 2.0)
             .sum();
         Points {
-            colors: tree.order.iter().map(|&i| colors[i as usize]).collect(),
+            shown: tree
+                .order
+                .iter()
+                .map(|&i| shown(paint, i as usize))
+                .collect(),
             normals: normals.concat(),
             spacing: (area / points.len().max(1) as f64).sqrt(),
             tree,
@@ -92,14 +97,25 @@ impl<'a> Points<'a> {
             let i = neighbor.index as usize;
             let distance2 = f64::from(neighbor.distance2);
             let agrees = out.dot(self.normals[i].as_dvec3());
-            if agrees <= 0.0 || distance2 > (FAR * self.spacing) * (FAR * self.spacing) {
+            let shown = self.shown[i];
+            let shows = shown[0].is_finite();
+            if !shows || agrees <= 0.0 || distance2 > (FAR * self.spacing) * (FAR * self.spacing) {
                 continue;
             }
             let weight = agrees * agrees / (distance2 + soft * soft);
-            sum += DVec3::from(self.colors[i].map(f64::from)) * weight;
+            sum += DVec3::from(shown.map(f64::from)) * weight;
             weights += weight;
         }
         (weights > 0.0).then(|| (sum / weights).to_array().map(|x| x as f32))
+    }
+}
+
+/// What a point shows; nothing that is finite where it shows nothing.
+fn shown(paint: &Paint, i: usize) -> Pixel {
+    match paint {
+        Paint::Nothing => [f32::NAN; 3],
+        Paint::Colors(colors) => colors[i].map(f32::from),
+        Paint::Scalars { values, .. } => [values[i].clamp(0.0, 1.0); 3],
     }
 }
 

@@ -1,15 +1,16 @@
-//! What a light mesh lost, as pictures on it: colour maps and normal maps.
+//! What a light mesh lost, as pictures on it: maps of colours, normals and occlusion.
 //!
 //! 1. `unwrap`: the light mesh is cut into charts, which lie flat in one picture and nowhere on each other (crate `uvunwrap`);
 //!    vertices on cuts are there once for each chart.
 //! 2. `tangents`: the frame of each vertex that normal maps are told in, by MikkTSpace, as glTF asks.
 //! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh.
-//! 4. `color`: the colour of the scan's points around that place, those of the other side of a wall left out. `relief`: the full mesh's
+//! 4. `color`: the colour of the scan's points around that place, or of their values, those of the other side of a wall left out. `relief`: the full mesh's
 //!    normal there, in the frame of the light mesh.
+//!    `occlusion`: how open the surface is there to the light around, by `layers`, the lines of many directions through the full mesh.
 //! 5. `fill`: texels that no point is near take the colours around them, and so do those around charts, so that no seam shows.
 //! 6. `picture`: PNG files.
 //!
-//! **In**: a full and a light mesh of one unit frame ([`crate::light`]), and the scan's points with their colours. **Out**: the light mesh
+//! **In**: a full and a light mesh of one unit frame ([`crate::light`]), and the scan's points with their colours or values. **Out**: the light mesh
 //! with texture coordinates, tangents and pictures ([`Textured`]).
 //!
 //! **Cost**: one nearest-triangle query a texel, and one of the nearest points for colours; 4 bytes a texel and map, and 40 bytes
@@ -18,8 +19,11 @@
 //! M. Mikkelsen, "Simulation of wrinkled surfaces revisited", 2008, for the frames; J. Cohen et al., "Appearance-preserving
 //! simplification", 1998, for normals and colours in maps of a simplified mesh.
 
+mod baking;
 mod color;
 mod fill;
+mod layers;
+mod occlusion;
 pub(crate) mod picture;
 mod relief;
 mod tangents;
@@ -32,6 +36,7 @@ use crate::cloud::Attribute;
 use crate::light::Painted;
 use crate::mesh::Mesh;
 use crate::report::distance::TriangleTree;
+use baking::Baking;
 use glam::Vec3;
 
 /// Sides of pictures, in texels.
@@ -44,10 +49,12 @@ const COVERED: f64 = 0.6;
 /// Which pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Map {
-    /// Of the scan's points; none where they have no colour.
+    /// Of the scan's points, or of their values; none where they show nothing.
     Color,
     /// Of the full mesh, in the light mesh's tangent space: +x along the tangent, +y up in the picture, +z out.
     Normal,
+    /// How open the full mesh is to the light around it, 255 where nothing is in its way; half as wide as the others.
+    Occlusion,
 }
 
 /// How a mesh is textured.
@@ -56,7 +63,7 @@ pub struct TextureParams {
     /// Sides of the pictures in texels, 64 to 8192; they are as high as the charts need. Default: two texels a point of the scan along each
     /// axis, a power of two from 256 to 4096.
     pub size: Option<usize>,
-    /// Default: both.
+    /// Default: colours and normals.
     pub maps: Vec<Map>,
 }
 
@@ -78,7 +85,7 @@ pub struct Texture {
     pub width: usize,
     /// In texels.
     pub height: usize,
-    /// A PNG file: 8 bits, three channels.
+    /// A PNG file: 8 bits, three channels; of occlusion one.
     pub png: Vec<u8>,
 }
 
@@ -95,19 +102,58 @@ pub struct Textured {
     pub textures: Vec<Texture>,
 }
 
-/// The scan's points in the meshes' frame, and their colours.
+/// The scan's points in the meshes' frame, and what they show.
 #[derive(Debug, Clone, Copy)]
 pub struct Scan<'a> {
     /// Positions.
     pub points: &'a [Vec3],
-    /// One a point, where there are any.
-    pub colors: Option<&'a [[u8; 3]]>,
+    /// One value a point.
+    pub paint: Paint<'a>,
+}
+
+/// What points show.
+#[derive(Debug, Clone, Copy)]
+pub enum Paint<'a> {
+    /// No colours.
+    Nothing,
+    /// One colour a point.
+    Colors(&'a [[u8; 3]]),
+    /// Measured values as colours.
+    Scalars {
+        /// One a point, 0 for the first of the ramp to 1 for the last; beyond as the ends. One that is not a number shows nothing.
+        values: &'a [f32],
+        /// At even steps.
+        ramp: &'a [[u8; 3]],
+    },
+}
+
+impl Paint<'_> {
+    /// # Errors
+    /// [`Error::BadLength`].
+    fn check(&self, points: usize) -> Result<()> {
+        let (array, found) = match self {
+            Paint::Nothing => return Ok(()),
+            Paint::Colors(colors) => ("colors", colors.len()),
+            Paint::Scalars { ramp: [], .. } => {
+                return Err(Error::bad_option("ramp", "one colour or more", "none"));
+            }
+            Paint::Scalars { values, .. } => ("scalars", values.len()),
+        };
+        match found == points {
+            true => Ok(()),
+            false => Err(Error::BadLength {
+                array: array.into(),
+                expected: format!("{points} (one a point)"),
+                found,
+            }),
+        }
+    }
 }
 
 /// Textures `light` with what `full` and the scan show.
 ///
 /// # Errors
-/// [`Error::BadOption`] (size; more charts than the size has room for), [`Error::Cancelled`].
+/// [`Error::BadOption`] (size; more charts than the size has room for), [`Error::BadLength`], [`Error::Cancelled`].
 pub fn bake(
     full: &Mesh,
     light: &Painted,
@@ -116,42 +162,24 @@ pub fn bake(
     progress: &mut dyn Progress,
 ) -> Result<Textured> {
     let size = size(params, scan.points.len())?;
+    scan.paint.check(scan.points.len())?;
     let mut tell =
         |from: f32, to: f32, part: f32| progress.update(Stage::Texture, from + (to - from) * part);
     let unwrapped = unwrap::unwrap(&light.mesh, size, &mut |part| tell(0.0, 0.2, part))?;
     let painted = split(light, &unwrapped.of, unwrapped.triangles);
     let uvs = unwrapped.uvs;
     let tangents = tangents::tangents(&painted.mesh, &uvs)?;
-    let [width, height] = unwrapped.size;
-    let texels = texels::Texels::new(&painted.mesh, &uvs, [width, height]);
     let faces = TriangleTree::new(&full.vertices, &full.triangles);
-    let spots = texels.spots(&painted.mesh, (full, &faces), &mut |part| {
-        tell(0.2, 0.6, part)
-    })?;
-    let mut textures = Vec::new();
-    for &map in &params.maps {
-        let mut done = |part: f32| tell(0.6, 0.95, part);
-        let pixels = match (map, scan.colors) {
-            (Map::Color, Some(colors)) => {
-                let colored = color::Points::new(scan.points, colors, (full, &faces));
-                colored.bake(&texels, &spots, full, &mut done)?
-            }
-            (Map::Color, None) => continue,
-            (Map::Normal, _) => {
-                relief::bake(&texels, &spots, full, (&painted.mesh, &tangents), &mut done)?
-            }
-        };
-        let filled = fill::fill(pixels, [width, height]);
-        let values = filled.as_flattened().iter();
-        let bytes: Vec<u8> = values.map(|x| x.round() as u8).collect();
-        textures.push(Texture {
-            map,
-            width,
-            height,
-            png: picture::png(&bytes, [width, height], png::ColorType::Rgb)?,
-        });
-    }
-    tell(0.95, 1.0, 1.0)?;
+    let baking = Baking {
+        full,
+        faces: &faces,
+        light: &painted.mesh,
+        uvs: &uvs,
+        tangents: &tangents,
+        scan,
+        size: unwrapped.size,
+    };
+    let textures = baking.all(&params.maps, &mut |part| tell(0.2, 1.0, part))?;
     Ok(Textured {
         painted,
         uvs,
