@@ -122,7 +122,7 @@ export function checkOptions(call, options = {}) {
   const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
   if (own.lods && own.triangles !== undefined) throw badOption('triangles', 'undefined where lods are given', own.triangles);
-  const baked = call === 'texture' ? own : own.texture;
+  const baked = /** @type {Record<string, any> | undefined} */ (call === 'texture' ? own : own.texture);
   if (baked?.range && baked.scalar === undefined) throw badOption('range', 'undefined, unless scalar says of what', baked.range);
   if (call === 'simplify' && own.triangles === undefined && own.error === undefined) throw badOption('triangles', 'a number of triangles, or error', undefined);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });

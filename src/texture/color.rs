@@ -2,6 +2,7 @@
 
 use super::Paint;
 use super::fill::Pixel;
+use super::groups::{Gathered, groups};
 use super::texels::{Texels, in_parallel, mix, place};
 use crate::base::error::Result;
 use crate::base::par;
@@ -79,21 +80,28 @@ impl<'a> Points<'a> {
         progress: &mut dyn FnMut(f32) -> Result<()>,
     ) -> Result<Vec<Option<Pixel>>> {
         let soft = SOFT * texels.length(mesh).max(self.spacing);
-        let found = in_parallel(spots, progress, Vec::new, |spot, near| {
-            self.at(spot, soft, near)
+        let at = |spot: &Spot| place(self.full, spot).as_vec3();
+        let places: Vec<Vec3> = spots.iter().map(at).collect();
+        let groups = groups(&places, texels.length(mesh));
+        let found = in_parallel(&groups, progress, Gathered::default, |group, gathered| {
+            let mut colors = Vec::with_capacity(group.len());
+            gathered.points(&places[group.clone()], &self.tree, NEAREST, |k, near| {
+                colors.push(self.at(&spots[group.start + k], soft, near));
+            });
+            colors
         })?;
         let mut pixels = vec![None; texels.size[0] * texels.size[1]];
-        for (texel, color) in texels.all.iter().zip(found) {
-            pixels[texel.pixel as usize] = color;
+        for (texel, color) in texels.all.iter().zip(found.iter().flatten()) {
+            pixels[texel.pixel as usize] = *color;
         }
         Ok(pixels)
     }
 
-    fn at(&self, spot: &Spot, soft: f64, near: &mut Vec<Neighbor>) -> Option<Pixel> {
-        let (at, out) = (place(self.full, spot), normal(self.full, spot));
-        self.tree.knn(at.as_vec3(), NEAREST, near);
+    /// The mean of the nearest points.
+    fn at(&self, spot: &Spot, soft: f64, near: &[Neighbor]) -> Option<Pixel> {
+        let out = normal(self.full, spot);
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        for neighbor in near.iter() {
+        for neighbor in near {
             let i = neighbor.index as usize;
             let distance2 = f64::from(neighbor.distance2);
             let agrees = out.dot(self.normals[i].as_dvec3());

@@ -3,7 +3,8 @@
 //! 1. `unwrap`: the light mesh is cut into charts, which lie flat in one picture and nowhere on each other (crate `uvunwrap`);
 //!    vertices on cuts are there once for each chart.
 //! 2. `tangents`: the frame of each vertex that normal maps are told in, by MikkTSpace, as glTF asks.
-//! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh.
+//! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh; `groups` of them
+//!    look together.
 //! 4. `color`: the colour of the scan's points around that place, or of their values, those of the other side of a wall left out. `relief`: the full mesh's
 //!    normal there, in the frame of the light mesh.
 //!    `occlusion`: how open the surface is there to the light around, by `layers`, the lines of many directions through the full mesh.
@@ -22,6 +23,7 @@
 mod baking;
 mod color;
 mod fill;
+mod groups;
 mod layers;
 mod occlusion;
 pub(crate) mod picture;
