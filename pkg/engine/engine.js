@@ -19,6 +19,7 @@ import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedO
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
+import { unlessAborted } from './unless-aborted.js';
 import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 /** @import { Build, CallOptions, CloudInfo, EngineOptions, FileCloud, Model, PointCloud, ReadOptions, ReconstructOptions } from '../types.js' */
@@ -438,19 +439,3 @@ export class Engine {
 }
 
 function nothing() {}
-
-/**
- * What `promise` gives, or the signal's reason as soon as it is aborted.
- * @template T
- * @param {Promise<T>} promise
- * @param {AbortSignal} signal
- * @returns {Promise<T>}
- */
-function unlessAborted(promise, signal) {
-  return new Promise((resolve, reject) => {
-    const abort = () => reject(signal.reason);
-    if (signal.aborted) return abort();
-    signal.addEventListener('abort', abort);
-    promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
-  });
-}

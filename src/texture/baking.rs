@@ -1,8 +1,9 @@
 //! Each map from its places to its file.
 
 use super::fill::{Pixel, fill};
+use super::maps::{Map, Paint, Scan, Texture};
 use super::texels::Texels;
-use super::{Map, Paint, Scan, Texture, color, occlusion, picture, relief};
+use super::{color, occlusion, picture, relief};
 use crate::base::error::Result;
 use crate::light::carry::Spot;
 use crate::mesh::Mesh;

@@ -1,8 +1,8 @@
 //! Colours of texels from the scan's points, or the values that become colours.
 
-use super::Paint;
 use super::fill::Pixel;
 use super::groups::{Gathered, groups};
+use super::maps::Paint;
 use super::texels::{Texels, in_parallel, mix, place};
 use crate::base::error::Result;
 use crate::base::par;

@@ -25,6 +25,7 @@ mod color;
 mod fill;
 mod groups;
 mod layers;
+mod maps;
 mod occlusion;
 pub(crate) mod picture;
 mod relief;
@@ -39,7 +40,8 @@ use crate::light::Painted;
 use crate::mesh::Mesh;
 use crate::report::distance::TriangleTree;
 use baking::Baking;
-use glam::Vec3;
+
+pub use maps::{Map, Paint, Scan, Texture};
 
 /// Sides of pictures, in texels.
 const SIZES: [usize; 2] = [64, 8192];
@@ -47,17 +49,6 @@ const SIZES: [usize; 2] = [64, 8192];
 const TEXELS_A_POINT: f64 = 4.0;
 /// About the share of a picture that charts cover.
 const COVERED: f64 = 0.6;
-
-/// Which pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Map {
-    /// Of the scan's points, or of their values; none where they show nothing.
-    Color,
-    /// Of the full mesh, in the light mesh's tangent space: +x along the tangent, +y up in the picture, +z out.
-    Normal,
-    /// How open the full mesh is to the light around it, 255 where nothing is in its way; half as wide as the others.
-    Occlusion,
-}
 
 /// How a mesh is textured.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,19 +69,6 @@ impl Default for TextureParams {
     }
 }
 
-/// A picture.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Texture {
-    /// What it shows.
-    pub map: Map,
-    /// In texels.
-    pub width: usize,
-    /// In texels.
-    pub height: usize,
-    /// A PNG file: 8 bits, three channels; of occlusion one.
-    pub png: Vec<u8>,
-}
-
 /// A mesh with texture coordinates, and pictures for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Textured {
@@ -102,54 +80,6 @@ pub struct Textured {
     pub tangents: Vec<[f32; 4]>,
     /// The pictures, in the order in which they were asked for.
     pub textures: Vec<Texture>,
-}
-
-/// The scan's points in the meshes' frame, and what they show.
-#[derive(Debug, Clone, Copy)]
-pub struct Scan<'a> {
-    /// Positions.
-    pub points: &'a [Vec3],
-    /// One value a point.
-    pub paint: Paint<'a>,
-}
-
-/// What points show.
-#[derive(Debug, Clone, Copy)]
-pub enum Paint<'a> {
-    /// No colours.
-    Nothing,
-    /// One colour a point.
-    Colors(&'a [[u8; 3]]),
-    /// Measured values as colours.
-    Scalars {
-        /// One a point, 0 for the first of the ramp to 1 for the last; beyond as the ends. One that is not a number shows nothing.
-        values: &'a [f32],
-        /// At even steps.
-        ramp: &'a [[u8; 3]],
-    },
-}
-
-impl Paint<'_> {
-    /// # Errors
-    /// [`Error::BadLength`].
-    fn check(&self, points: usize) -> Result<()> {
-        let (array, found) = match self {
-            Paint::Nothing => return Ok(()),
-            Paint::Colors(colors) => ("colors", colors.len()),
-            Paint::Scalars { ramp: [], .. } => {
-                return Err(Error::bad_option("ramp", "one colour or more", "none"));
-            }
-            Paint::Scalars { values, .. } => ("scalars", values.len()),
-        };
-        match found == points {
-            true => Ok(()),
-            false => Err(Error::BadLength {
-                array: array.into(),
-                expected: format!("{points} (one a point)"),
-                found,
-            }),
-        }
-    }
 }
 
 /// Textures `light` with what `full` and the scan show.
