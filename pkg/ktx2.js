@@ -7,7 +7,7 @@ import { encodeToKTX2 } from 'ktx2-encoder';
  */
 const HOW = {
   color: { isUASTC: false, qualityLevel: 200, isPerceptual: true, isSetKTX2SRGBTransferFunc: true },
-  normal: { isUASTC: true, uastcLDRQualityLevel: 2, needSupercompression: true, enableRDO: true, rdoQualityLevel: 2, isNormalMap: true, isPerceptual: false, isSetKTX2SRGBTransferFunc: false },
+  normal: { isUASTC: true, uastcLDRQualityLevel: 1, needSupercompression: true, enableRDO: true, rdoQualityLevel: 2, isNormalMap: true, isPerceptual: false, isSetKTX2SRGBTransferFunc: false },
   occlusion: { isUASTC: false, qualityLevel: 200, isPerceptual: false, isSetKTX2SRGBTransferFunc: false },
 };
 

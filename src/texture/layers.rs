@@ -57,14 +57,19 @@ impl Layers {
         }
     }
 
-    /// How far it is from a place of the surface, whose unit normal is `normal`, to the next of the surface along the lines, on the side
-    /// that the normal is on; and the cosine of the angle between the two.
-    pub(super) fn free(&self, at: DVec3, normal: DVec3) -> (f64, f64) {
+    /// How far it is from a place of the surface, whose unit normal is `normal` and whose triangle has the unit normal `face`, to the next of
+    /// the surface along the lines, on the side that the normal is on; and the cosine of the angle between the two. Where that way leads
+    /// into the triangle itself, nothing is told: the cosine is 0.
+    pub(super) fn free(&self, at: DVec3, normal: DVec3, face: DVec3) -> (f64, f64) {
         let [x, y, z] = place(&self.axes, at).to_array();
-        let [slope_x, slope_y, cosine] = self.axes.map(|axis| axis.dot(normal)).into();
+        let [slope_x, slope_y, upright] = self.axes.map(|axis| axis.dot(face));
+        let cosine = self.axes[2].dot(normal);
+        if cosine * upright <= 0.0 {
+            return (f64::INFINITY, 0.0);
+        }
         let (column, row) = (nearest(x), nearest(y));
-        // The line passes beside the place: where the surface's plane crosses it.
-        let steep = cosine.abs().max(STEEP).copysign(cosine);
+        // The line passes beside the place: where the triangle's plane crosses it.
+        let steep = upright.abs().max(STEEP).copysign(upright);
         let beside = (line_at(column) - x) * slope_x + (line_at(row) - y) * slope_y;
         let own = z - beside / steep;
         let line = row * LINES + column;

@@ -33,6 +33,9 @@ pub(super) fn bake(
     let stand = |spot: &Spot| Seen {
         at: place(full, spot),
         normal: normal(full, spot),
+        face: full
+            .cross(full.triangles[spot.triangle as usize])
+            .normalize_or_zero(),
         open: 0.0,
         all: 0.0,
     };
@@ -49,7 +52,7 @@ pub(super) fn bake(
             || (),
             |seen, ()| {
                 layers.iter().fold(*seen, |seen, layers| {
-                    let (free, cosine) = layers.free(seen.at, seen.normal);
+                    let (free, cosine) = layers.free(seen.at, seen.normal, seen.face);
                     Seen {
                         open: seen.open + cosine * (free / REACH).min(1.0),
                         all: seen.all + cosine,
@@ -61,7 +64,11 @@ pub(super) fn bake(
     }
     let mut pixels = vec![None; texels.size[0] * texels.size[1]];
     for (texel, Seen { open, all, .. }) in texels.all.iter().zip(seen) {
-        let value = (255.0 * open / all.max(f64::MIN_POSITIVE)) as f32;
+        let value = if all > 0.0 {
+            (255.0 * open / all) as f32
+        } else {
+            255.0
+        };
         pixels[texel.pixel as usize] = Some([value; 3]);
     }
     progress(1.0)?;
@@ -73,6 +80,8 @@ pub(super) fn bake(
 struct Seen {
     at: DVec3,
     normal: DVec3,
+    /// The normal of the triangle that it lies on.
+    face: DVec3,
     open: f64,
     all: f64,
 }
