@@ -3,7 +3,7 @@
  * optional peer dependencies of the package. Nothing else of the package imports them.
  */
 import { WebIO } from '@gltf-transform/core';
-import { EXTMeshoptCompression, EXTTextureWebP, KHRMeshQuantization } from '@gltf-transform/extensions';
+import { EXTMeshoptCompression, EXTTextureWebP, KHRMeshQuantization, KHRTextureBasisu } from '@gltf-transform/extensions';
 import { MeshoptEncoder } from 'meshoptimizer';
 
 /**
@@ -13,7 +13,7 @@ import { MeshoptEncoder } from 'meshoptimizer';
  */
 export async function compress(glb) {
   await MeshoptEncoder.ready;
-  const io = new WebIO().registerExtensions([EXTMeshoptCompression, EXTTextureWebP, KHRMeshQuantization]);
+  const io = new WebIO().registerExtensions([EXTMeshoptCompression, EXTTextureWebP, KHRMeshQuantization, KHRTextureBasisu]);
   io.registerDependencies({ 'meshopt.encoder': MeshoptEncoder });
   const document = await io.readBinary(glb);
   for (const mesh of document.getRoot().listMeshes()) mesh.listPrimitives().forEach(reorder);

@@ -168,7 +168,7 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   /** With `texture`, four a vertex: a unit vector, and the sign of the bitangent `cross(normal, tangent)`, as glTF has them. */
   tangents?: Float32Array;
   /** With `texture`. */
-  textures?: Partial<Record<'color' | 'normal', Texture>>;
+  textures?: Partial<Record<TextureMap, Texture>>;
   /** With `lods`: the meshes of the other budgets. */
   lods?: SurfaceMesh<Positions>[];
   /** The points that the surface was fitted to. */
@@ -185,6 +185,9 @@ export interface SurfaceMesh<Positions extends Float32Array | Float64Array = Flo
   report: SurfaceReport;
 }
 
+/** What a picture on a mesh shows. */
+export type TextureMap = 'color' | 'normal' | 'occlusion';
+
 /** A picture on a mesh. */
 export interface Texture {
   /** In texels. */
@@ -192,7 +195,9 @@ export interface Texture {
   height: number;
   /** The bytes of a file of that type. */
   data: Uint8Array;
-  type: 'image/png';
+  type: 'image/png' | 'image/jpeg' | 'image/webp' | 'image/ktx2';
+  /** With `scalar`: the values that the ends of the colours stand for. */
+  range?: [number, number];
 }
 
 /** Of a reconstruction: pictures of what the points show, so that a mesh of few triangles looks like one of many. */
@@ -210,9 +215,17 @@ export interface TextureOptions {
   size?: number;
   /**
    * `'color'`: the colours of the points, where they have any. `'normal'`: the surface as it was before `triangles`, in tangent space.
-   * Default: both.
+   * `'occlusion'`: how much of the light around comes to the surface, what is in its way within a fourth of the diagonal; half as wide.
+   * Default: `'color'` and `'normal'`.
    */
-  maps?: ('color' | 'normal')[];
+  maps?: TextureMap[];
+  /**
+   * Values in the place of the points' colours, as colours from blue to yellow: the name of an attribute, or `'height'`, which is along `up`.
+   * Default: the colours of the points.
+   */
+  scalar?: string;
+  /** With `scalar`: the values that the ends of the colours stand for. Default: where all but a fiftieth at each end lie. */
+  range?: [number, number];
 }
 
 /** What can be said of a cloud before anything is done to it. Lengths are in the caller's unit. */
@@ -239,6 +252,10 @@ export type Format = 'ply' | 'xyz' | 'pcd' | 'obj' | 'off' | 'stl' | 'glb' | 'la
 export interface FileCloud<Positions extends Float32Array | Float64Array = Float32Array | Float64Array> extends PointCloud<Positions> {
   /** With `faces: 'mesh'`, of a file with faces: three a triangle. */
   indices?: Uint32Array;
+  /** With `faces: 'mesh'`, of a GLB whose triangles all wear the same pictures: as of {@link SurfaceMesh}. */
+  uvs?: Float32Array;
+  tangents?: Float32Array;
+  textures?: Partial<Record<TextureMap, Texture>>;
   /**
    * What the columns of a table of text were taken for, as `columns` of {@link ReadOptions} says it: `x y z`, `nx ny nz`,
    * `red green blue`, `rgb` for a packed colour, `-` for one that was passed over, or the attribute's name.
@@ -363,6 +380,13 @@ export interface WriteOptions {
    */
   quantize?: boolean;
   /**
+   * Of a GLB file: what the pictures of a textured mesh are. `'webp'` (`EXT_texture_webp`, a third of the bytes) needs `@jsquash/webp`, `'ktx2'`
+   * (`KHR_texture_basisu`, which stays compressed in graphics memory) needs `ktx2-encoder`; they are loaded when asked for, and compute in
+   * the caller's thread. Where a bundler makes the program, `webp` of `pointweave/webp` or `ktx2` of `pointweave/ktx2` takes the place of the
+   * name. Default `'png'`.
+   */
+  pictures?: 'png' | 'webp' | 'ktx2' | PictureEncoder;
+  /**
    * Of a GLB file: compressed without loss (`EXT_meshopt_compression`), vertices and triangles in another order; viewers need
    * a decoder. Needs `@gltf-transform/core`, `@gltf-transform/extensions` and `meshoptimizer`, which are loaded when asked for,
    * and computes in the caller's thread. Where a bundler makes the program, `compress` of `pointweave/meshopt` takes the place
@@ -370,6 +394,9 @@ export interface WriteOptions {
    */
   meshopt?: boolean | ((glb: Uint8Array) => Promise<Uint8Array>);
 }
+
+/** Makes a file of a picture: four bytes a pixel, red, green, blue and alpha, rows from the top. */
+export type PictureEncoder = (picture: { map: TextureMap; width: number; height: number; pixels: Uint8Array }) => Promise<Uint8Array>;
 
 /** `'desk'`: the duck as one gets it, on a table with a block, with shadows, a hole, strays and uneven light. */
 export type Model = 'duck' | 'pig' | 'part' | 'desk';

@@ -35,7 +35,7 @@ export interface Drawable extends Placed {
   /** Four a vertex: the frames that the picture of normals is told in. */
   tangents?: Float32Array;
   /** Pictures of a mesh, as `reconstruct` and `texture` make them; they come as soon as the browser has decoded them, in place of `colors`. */
-  textures?: Partial<Record<'color' | 'normal', { data: Uint8Array; type: string }>>;
+  textures?: Partial<Record<'color' | 'normal' | 'occlusion', { data: Uint8Array; type: string }>>;
   /** Which way is up, where that is known. */
   up?: [number, number, number];
   /** It was scanned from the air: z is up. */

@@ -6,7 +6,8 @@ mod mesh_files;
 
 use mesh_files::{glb, png};
 use pointweave::formats::{
-    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, Want, read_beside, read_with,
+    FaceMode, Format, Positions, RawCloud, ReadOptions, Reading, Skin, Want, decode_picture,
+    read_beside, read_with,
 };
 
 fn values(cloud: &RawCloud) -> Vec<[f64; 3]> {
@@ -537,4 +538,44 @@ fn far_away_meshes_stay_exact() {
     let file = "OFF\n4 1 0\n500000 4000000 0\n500003 4000000 0\n500003 4000003 0\n500000 4000003 0\n4 0 1 2 3\n";
     let cloud = sampled(file.as_bytes(), Format::Off);
     assert!(matches!(cloud.positions, Positions::F64(_)));
+}
+
+/// Reads a file whole, with the pictures of its triangles.
+fn worn(bytes: &[u8]) -> Option<Skin> {
+    let options = ReadOptions {
+        faces: FaceMode::Mesh,
+        ..ReadOptions::default()
+    };
+    let mut reading = Reading::new(None, None, bytes.len() as u64)
+        .with_options(options)
+        .unwrap();
+    reading.push(bytes).unwrap();
+    while !reading.end().unwrap() {
+        match reading.want() {
+            Some(Want::Picture(bytes)) => reading.give_picture(decode_picture(&bytes)),
+            Some(Want::File(_)) => reading.give_file(None),
+            None => panic!("it waits for nothing"),
+        }
+    }
+    reading.take_skin()
+}
+
+#[test]
+fn a_glb_of_one_material_keeps_its_pictures() {
+    let material = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"normalTexture":{"index":0},"occlusionTexture":{"index":0}}"#;
+    let skin = worn(&glb(material, "{}", "", &four())).unwrap();
+    assert_eq!(skin.uvs, [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]);
+    for picture in [skin.color, skin.normal, skin.occlusion] {
+        assert_eq!(picture, Some(four()), "the bytes as they are");
+    }
+    assert_eq!(skin.tangents, None);
+    for other in [
+        r#"{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"baseColorTexture":{"index":0}}}"#,
+        r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}}}"#,
+        r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[2,2]}}}}}"#,
+        r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":7}}}"#,
+        "{}",
+    ] {
+        assert_eq!(worn(&glb(other, "{}", "", &four())), None, "{other}");
+    }
 }

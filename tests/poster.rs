@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use pointweave::Error;
-use pointweave::poster::{PosterParams, Reach, Scene, View, poster};
+use pointweave::poster::{Pixels, PosterParams, Reach, Scene, View, poster};
 use pointweave::progress::Silent;
 
 /// Straight at the front, from where everything is seen.
@@ -127,20 +127,22 @@ fn what_is_nearer_is_in_front_and_up_is_up() {
 fn pictures_lie_where_their_places_say() {
     let (points, triangles) = square(0.0);
     // Red and green above, blue and white below.
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, 2, 2);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer
-        .write_image_data(&[255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255])
-        .unwrap();
-    writer.finish().unwrap();
+    let rgba = [
+        [255, 0, 0, 255],
+        [0, 255, 0, 255],
+        [0, 0, 255, 255],
+        [255; 4],
+    ];
+    let color = Pixels {
+        width: 2,
+        rgba: rgba.as_flattened(),
+    };
     let uvs = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let scene = Scene {
         points: &points,
         triangles: Some(&triangles),
         uvs: Some(&uvs),
-        color: Some(&file),
+        color: Some(color),
         ..Scene::default()
     };
     let picture = drawn(&scene, &params(FRONT));
@@ -156,6 +158,35 @@ fn pictures_lie_where_their_places_say() {
     assert_eq!(brightest(95, 10), [false, true, false]);
     assert_eq!(brightest(25, 80), [false, false, true]);
     assert_eq!(brightest(95, 80), [false, false, false]);
+}
+
+#[test]
+fn where_less_light_comes_to_it_is_darker() {
+    let (points, triangles) = square(0.0);
+    let uvs = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    let lit = |open: u8| {
+        let rgba = [open, 0, 0, 255];
+        let occlusion = Pixels {
+            width: 1,
+            rgba: &rgba,
+        };
+        let scene = Scene {
+            points: &points,
+            triangles: Some(&triangles),
+            uvs: Some(&uvs),
+            occlusion: Some(occlusion),
+            ..Scene::default()
+        };
+        drawn(&scene, &params(FRONT))[45 * 120 + 60]
+    };
+    let bare = Scene {
+        points: &points,
+        triangles: Some(&triangles),
+        ..Scene::default()
+    };
+    assert_eq!(lit(255), drawn(&bare, &params(FRONT))[45 * 120 + 60]);
+    assert!(lit(128)[0] < lit(255)[0] - 30);
+    assert_eq!(lit(0), [0, 0, 0, 255]);
 }
 
 #[test]
@@ -257,4 +288,9 @@ fn a_camera_within_things_draws_and_what_is_wrong_has_its_error() {
         ),
         "bad-length"
     );
+    for (width, bytes) in [(0, 4), (2, 12), (1, 0)] {
+        let rgba = vec![0; bytes];
+        let color = Some(Pixels { width, rgba: &rgba });
+        assert_eq!(code(&Scene { color, ..scene }, &fine), "bad-length");
+    }
 }

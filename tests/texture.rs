@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use pointweave::pipeline::texture;
 use pointweave::progress::Silent;
-use pointweave::texture::{Map, Texture, TextureParams, Textured};
+use pointweave::texture::{Map, Paint, Texture, TextureParams, Textured};
 use pointweave::{Cloud, Error};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -58,7 +58,7 @@ fn textured(size: usize) -> (Cloud, Textured) {
         size: Some(size),
         ..Default::default()
     };
-    let scan = (&positions[..], Some(&colors[..]));
+    let scan = (&positions[..], Paint::Colors(&colors));
     let (textured, report) =
         texture((&cloud, &indices), scan, Some(250), &params, &mut Silent).unwrap();
     assert!(report.unwrap().triangles <= 250);
@@ -75,7 +75,10 @@ fn pixels(texture: &Texture) -> Vec<[u8; 3]> {
         (info.width as usize, info.height as usize),
         (texture.width, texture.height)
     );
-    bytes.as_chunks().0.to_vec()
+    match info.color_type {
+        png::ColorType::Grayscale => bytes.iter().map(|&x| [x; 3]).collect(),
+        _ => bytes.as_chunks().0.to_vec(),
+    }
 }
 
 /// Between texels, as a renderer reads it.
@@ -236,7 +239,7 @@ fn colours_do_not_come_through_a_thin_wall() {
     };
     let (t, _) = texture(
         (&cloud, &indices),
-        (&positions, Some(&colors)),
+        (&positions, Paint::Colors(&colors)),
         None,
         &params,
         &mut Silent,
@@ -267,7 +270,7 @@ fn without_colours_there_is_no_picture_of_them_and_a_wrong_size_is_an_error() {
         };
         texture(
             (&cloud, &indices),
-            (&positions, None),
+            (&positions, Paint::Nothing),
             None,
             &params,
             &mut Silent,
@@ -281,5 +284,190 @@ fn without_colours_there_is_no_picture_of_them_and_a_wrong_size_is_an_error() {
     assert!(t.textures[0].width == 256 && report.is_none());
     for size in [63, 8193] {
         assert!(matches!(bake(Some(size)), Err(Error::BadOption { .. })));
+    }
+}
+
+/// A floor with a wall on its side at x = 0, `high` as the floor is wide, each of `n` by `n` cells.
+fn corner(n: usize, high: f64) -> (Vec<f64>, Vec<u32>) {
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    for wall in [false, true] {
+        let first = (positions.len() / 3) as u32;
+        for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+            let [s, t] = [i, j].map(|k| k as f64 / n as f64);
+            positions.extend(if wall {
+                [0.0, t, s * high]
+            } else {
+                [s, t, 0.0]
+            });
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let at = |i: usize, j: usize| first + (i * (n + 1) + j) as u32;
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            indices.extend(if wall {
+                [a, c, b, a, d, c]
+            } else {
+                [a, b, c, a, c, d]
+            });
+        }
+    }
+    (positions, indices)
+}
+
+/// How open the floor is `x` beside the middle of a wall from y = 0 to 1: the mean over directions, weighted by the cosine, of how far it
+/// is to the wall, of `reach` at most.
+fn open_beside_a_wall([x, y]: [f64; 2], high: f64, reach: f64) -> f64 {
+    const STEPS: usize = 300;
+    let (mut open, mut all) = (0.0, 0.0);
+    for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+        // Evenly by cosine over the half sphere: the disk below it.
+        let radius = ((i as f64 + 0.5) / STEPS as f64).sqrt();
+        let turn = std::f64::consts::TAU * (j as f64 + 0.5) / STEPS as f64;
+        let d = DVec3::new(
+            radius * turn.cos(),
+            radius * turn.sin(),
+            (1.0 - radius * radius).sqrt(),
+        );
+        let free = if d.x < 0.0 { x / -d.x } else { f64::INFINITY };
+        let hits = free * d.z < high && (0.0..1.0).contains(&(y + free * d.y));
+        open += if hits { (free / reach).min(1.0) } else { 1.0 };
+        all += 1.0;
+    }
+    open / all
+}
+
+#[test]
+fn occlusion_beside_a_wall_is_that_of_the_half_space() {
+    let high = 0.5;
+    let (positions, indices) = corner(40, high);
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    let params = TextureParams {
+        size: Some(512),
+        maps: vec![Map::Occlusion],
+    };
+    let (t, _) = texture(
+        (&cloud, &indices),
+        (&positions, Paint::Nothing),
+        None,
+        &params,
+        &mut Silent,
+    )
+    .unwrap();
+    let [texture] = &t.textures[..] else {
+        panic!("{} pictures", t.textures.len());
+    };
+    let (shown, reach) = (pixels(texture), 0.25 * cloud.frame.diagonal);
+    let (mut squares, mut count, mut worst) = (0.0, 0.0, 0.0f64);
+    for &triangle in &t.painted.mesh.triangles {
+        let middle = |value: &dyn Fn(usize) -> DVec3| mix(triangle, [1.0 / 3.0; 3], value);
+        let at = middle(&|v| DVec3::from(cloud.frame.to_caller(t.painted.mesh.vertices[v])));
+        let uv = middle(&|v| DVec3::new(t.uvs[v][0].into(), t.uvs[v][1].into(), 0.0));
+        if at.z.abs() > 1e-4 || at.x < 0.05 {
+            continue;
+        }
+        let told = sample(&shown, texture, [uv.x, uv.y]).x / 255.0;
+        let off = told - open_beside_a_wall([at.x, at.y], high, reach);
+        squares += off * off;
+        count += 1.0;
+        worst = worst.max(off.abs());
+    }
+    let rms = f64::sqrt(squares / count);
+    assert!(count > 2000.0, "{count} places");
+    assert!(rms < 0.01 && worst < 0.05, "{rms} (rms), {worst} at most");
+}
+
+#[test]
+fn a_flat_box_is_open_outside_and_dark_inside() {
+    // Its corners have the mean normals of three faces.
+    let corners: Vec<f64> = (0..8)
+        .flat_map(|k| [(k & 1) as f64, (k >> 1 & 1) as f64, 0.1 * (k >> 2) as f64])
+        .collect();
+    let faces: [[u32; 4]; 6] = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    for inwards in [false, true] {
+        let corner = |k: u32| corners[3 * k as usize..][..3].to_vec();
+        let positions: Vec<f64> = faces.iter().flatten().flat_map(|&k| corner(k)).collect();
+        let indices: Vec<u32> = (0..6)
+            .flat_map(|f| {
+                let [a, b, c, d] = [0, 1, 2, 3].map(|k| 4 * f + k);
+                match inwards {
+                    true => [a, c, b, a, d, c],
+                    false => [a, b, c, a, c, d],
+                }
+            })
+            .collect();
+        let cloud = Cloud::from_f64(&positions).unwrap();
+        let params = TextureParams {
+            size: Some(128),
+            maps: vec![Map::Occlusion],
+        };
+        let scan = (&positions[..], Paint::Nothing);
+        let (t, _) = texture((&cloud, &indices), scan, None, &params, &mut Silent).unwrap();
+        let shown = pixels(&t.textures[0]);
+        let (mut sum, mut count) = (0.0, 0.0);
+        everywhere(&t, |triangle, weights| {
+            let uv = mix(triangle, weights, |v| {
+                DVec3::new(t.uvs[v][0].into(), t.uvs[v][1].into(), 0.0)
+            });
+            sum += sample(&shown, &t.textures[0], [uv.x, uv.y]).x;
+            count += 1.0;
+        });
+        let mean = sum / count;
+        let range = if inwards { 80.0..160.0 } else { 250.0..255.1 };
+        assert!(range.contains(&mean), "{mean}, inwards: {inwards}");
+    }
+}
+
+#[test]
+fn values_become_colours_of_a_ramp_and_those_that_are_none_show_nothing() {
+    let (positions, indices) = hills(40);
+    let cloud = Cloud::from_f64(&positions).unwrap();
+    let ramp: Vec<[u8; 3]> = (0..=255).map(|k| [k, 255 - k, 7]).collect();
+    // As x, but beyond the ends, and unknown in a strip.
+    let value = |p: &[f64]| match p[1] {
+        y if (0.4..0.45).contains(&y) => f32::NAN,
+        _ => 1.5 * p[0] as f32 - 0.25,
+    };
+    let values: Vec<f32> = positions.chunks_exact(3).map(value).collect();
+    let params = TextureParams {
+        size: Some(256),
+        maps: vec![Map::Color],
+    };
+    let baked = |values: &[f32], ramp: &[[u8; 3]]| {
+        let paint = Paint::Scalars { values, ramp };
+        let scan = (&positions[..], paint);
+        texture((&cloud, &indices), scan, Some(500), &params, &mut Silent)
+    };
+    let (t, _) = baked(&values, &ramp).unwrap();
+    let shown = pixels(&t.textures[0]);
+    assert!(shown.iter().all(|&[r, g, b]| r == 255 - g && b == 7));
+    let (mut squares, mut count) = (0.0, 0.0);
+    everywhere(&t, |triangle, weights| {
+        let uv = mix(triangle, weights, |v| {
+            DVec3::new(t.uvs[v][0].into(), t.uvs[v][1].into(), 0.0)
+        });
+        let at = mix(triangle, weights, |v| {
+            DVec3::from(cloud.frame.to_caller(t.painted.mesh.vertices[v]))
+        });
+        let told = sample(&shown, &t.textures[0], [uv.x, uv.y]).x / 255.0;
+        squares += (told - (1.5 * at.x - 0.25).clamp(0.0, 1.0)).powi(2);
+        count += 1.0;
+    });
+    let rms = f64::sqrt(squares / count);
+    assert!(rms < 0.015, "{rms}");
+    assert_eq!(baked(&values[1..], &ramp).unwrap_err().code(), "bad-length");
+    assert_eq!(baked(&values, &[]).unwrap_err().code(), "bad-option");
+}
+
+#[test]
+fn sides_of_pictures_are_whole_blocks() {
+    let (_, t) = textured(257);
+    for Texture { width, height, .. } in &t.textures {
+        assert_eq!([width % 4, height % 4], [0, 0], "{width} x {height}");
     }
 }

@@ -593,12 +593,14 @@ fn usdz_is_a_stored_layer_with_y_up_in_metres() {
 fn the_pictures_of_a_mesh_lie_in_usdz_beside_its_layer() {
     let mut cloud = RawCloud::new(Positions::F32(vec![0., 0., 0., 1., 0., 0., 0., 1., 0.]));
     cloud.colors = Some(vec![9; 9]);
-    let pictures = [vec![1u8; 100], vec![2u8; 70]];
+    let file = |byte: u8, length: usize| [&b"\x89PNG"[..], &vec![byte; length]].concat();
+    let pictures = [file(1, 100), file(2, 70), file(3, 50)];
     cloud.skin = Some(Box::new(Skin {
         uvs: vec![0.0, 0.0, 1.0, 0.25, 0.5, 1.0],
         tangents: None,
         color: Some(pictures[0].clone()),
         normal: Some(pictures[1].clone()),
+        occlusion: Some(pictures[2].clone()),
     }));
     let options = WriteOptions::default();
     let bytes = write(&cloud, Some(&[0, 1, 2]), Output::Usdz, options).unwrap();
@@ -617,10 +619,60 @@ fn the_pictures_of_a_mesh_lie_in_usdz_beside_its_layer() {
         "asset inputs:file = @normal.png@\n",
         "color3f inputs:diffuseColor.connect = </Scan/Material/ColorPicture.outputs:rgb>\n",
         "normal3f inputs:normal.connect = </Scan/Material/NormalPicture.outputs:rgb>\n",
+        "float inputs:occlusion.connect = </Scan/Material/OcclusionPicture.outputs:r>\n",
     ] {
         assert!(layer.contains(line), "{line}");
     }
     assert!(!layer.contains("displayColor"), "the picture has them");
+    let archive = write(&cloud, Some(&[0, 1, 2]), Output::Zip, options).unwrap();
+    for name in ["color.png", "normal.png", "occlusion.png"] {
+        assert!(
+            archive
+                .windows(name.len())
+                .any(|part| part == name.as_bytes()),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn pictures_of_other_kinds_go_into_glb_alone() {
+    let mut cloud = RawCloud::new(Positions::F32(vec![0., 0., 0., 1., 0., 0., 0., 1., 0.]));
+    let [webp, ktx2] = [
+        b"RIFF\x04\0\0\0WEBP".to_vec(),
+        b"\xabKTX 20\xbb\r\n\x1a\n".to_vec(),
+    ];
+    cloud.skin = Some(Box::new(Skin {
+        uvs: vec![0.0; 6],
+        color: Some(webp.clone()),
+        normal: Some(b"\x89PNG".to_vec()),
+        occlusion: Some(ktx2),
+        ..Skin::default()
+    }));
+    let options = WriteOptions {
+        quantize: true,
+        ..WriteOptions::default()
+    };
+    let bytes = write(&cloud, Some(&[0, 1, 2]), Output::Glb, options).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    for part in [
+        r#""extensionsRequired":["EXT_texture_webp","KHR_texture_basisu","KHR_mesh_quantization"]"#,
+        r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}},"sampler":0},{"source":1,"sampler":0},{"extensions":{"KHR_texture_basisu":{"source":2}},"sampler":0}]"#,
+        r#""mimeType":"image/webp""#,
+        r#""mimeType":"image/ktx2""#,
+        r#""occlusionTexture":{"index":2}"#,
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    for format in [Output::Usdz, Output::Zip] {
+        let error = write(&cloud, Some(&[0, 1, 2]), format, WriteOptions::default()).unwrap_err();
+        assert_eq!(error.code(), "bad-option");
+    }
+    if let Some(skin) = &mut cloud.skin {
+        skin.color = Some(b"GIF89a".to_vec());
+    }
+    let error = write(&cloud, Some(&[0, 1, 2]), Output::Glb, options).unwrap_err();
+    assert_eq!(error.code(), "bad-option");
 }
 
 #[test]

@@ -39,7 +39,7 @@ import { UsageError } from './usage.js';
  */
 
 /** The formats that a flag is for, and no others. */
-const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], texture: ['glb', 'usdz', 'zip'] };
+const ONLY = { encoding: ['ply'], quantize: ['glb'], meshopt: ['glb'], pictures: ['glb'], texture: ['glb', 'usdz', 'zip'] };
 
 /** @type {Command[]} */
 export const COMMANDS = ['reduce', 'reconstruct', 'inspect', 'prepare', 'merge', 'simplify', 'poster', 'catalogue', 'tiles'];

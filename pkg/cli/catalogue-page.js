@@ -38,8 +38,8 @@ export function indexPage(title, entries) {
     const { name, source } = entry;
     if ('error' in entry) return item(entry, `<div class="none">no model</div><div><h2>${safe(source)}</h2><p class="bad">${safe(entry.error.message)}</p></div>`);
     const { triangles, bytes, doubts } = entry.made;
-    const model = `<point-weave src="${name}/model.glb" poster="${name}/poster.png" alt="${safe(source)}"></point-weave>`;
-    const links = `<p>${whole(triangles)} triangles, ${size(bytes)} · <a href="${name}/model.glb" download="${name}.glb">GLB</a> · <a href="${name}/report.json">report</a></p>`;
+    const model = `<point-weave src="${name}/model.glb" poster="${name}/poster.png" ar ios-src="${name}/model.usdz" alt="${safe(source)}"></point-weave>`;
+    const links = `<p>${whole(triangles)} triangles, ${size(bytes)} · <a href="${name}/model.glb" download="${name}.glb">GLB</a> · <a href="${name}/model.usdz" download="${name}.usdz">USDZ</a> · <a href="${name}/report.json">report</a></p>`;
     return item(entry, `${model}<div><h2>${safe(source)}</h2>${links}${doubtful(doubts)}</div>`);
   });
   const head = `<label>Search <input type="search" autocomplete="off"></label> <output></output> <a href="contact.html">Contact sheet</a>`;

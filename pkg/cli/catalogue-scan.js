@@ -38,7 +38,7 @@ const POSTER = [800, 600];
  * @param {AbortSignal} signal
  * @returns {Promise<Made>}
  */
-export async function make(engine, { read, own, cloud: said, steps }, path, folder, signal) {
+export async function make(engine, { read, own, cloud: said, steps, write }, path, folder, signal) {
   const start = performance.now();
   const given = await engine.read(await openInput(path, signal), { name: basename(path), beside: besideOf(path), ...read, signal, transfer: true });
   const { file } = given;
@@ -48,10 +48,13 @@ export async function make(engine, { read, own, cloud: said, steps }, path, fold
   const up = scan.up ?? direction(likelyUp(scan, frameOf(scan).size));
   const prepare = steps.length > 0 ? { prepare: steps } : {};
   const mesh = await engine.reconstruct({ ...scan, up }, { ...own, ...prepare, signal, transfer: true });
-  const model = await engine.write(mesh, { format: 'glb', quantize: true, signal });
+  /** @type {import('../types.js').WriteOptions} */
+  const options = { format: 'glb', quantize: true, ...write };
+  const model = await engine.write(mesh, { ...options, signal });
+  const usdz = await engine.write(mesh, { format: 'usdz', signal });
   /** @type {Record<string, Uint8Array>} */
   const levels = {};
-  for (const [i, level] of (mesh.lods ?? []).entries()) levels[levelName('model.glb', i + 1)] = await engine.write(level, { format: 'glb', quantize: true, signal });
+  for (const [i, level] of (mesh.lods ?? []).entries()) levels[levelName('model.glb', i + 1)] = await engine.write(level, { ...options, signal });
   const poster = await engine.poster(mesh, { size: POSTER, signal });
   /** @type {SurfaceReport} */
   const report = mesh.report;
@@ -62,7 +65,7 @@ export async function make(engine, { read, own, cloud: said, steps }, path, fold
   const doubts = [...reasonLines(told), ...doubtLines(faults)];
   const seconds = (performance.now() - start) / 1000;
   const whole = { source: basename(path), file, model: { bytes: model.length, triangles: report.triangles }, doubts, steps: told, report, seconds };
-  const files = { 'model.glb': model, ...levels, 'poster.png': poster.data, 'report.json': new TextEncoder().encode(`${JSON.stringify(whole, null, 2)}\n`) };
+  const files = { 'model.glb': model, ...levels, 'model.usdz': usdz, 'poster.png': poster.data, 'report.json': new TextEncoder().encode(`${JSON.stringify(whole, null, 2)}\n`) };
   for (const [name, bytes] of Object.entries(files)) await writeOutput(join(folder, name), bytes, signal);
   return {
     files: Object.keys(files),

@@ -6,6 +6,7 @@ import { availableParallelism } from 'node:os';
 import { basename, extname, join, relative, resolve, sep } from 'node:path';
 import { createEngine } from '../index.node.js';
 import { PointweaveError } from '../engine/errors.js';
+import { compressorFor, encoderFor } from '../files/compressor.js';
 import { contactPage, indexPage } from './catalogue-page.js';
 import { DEFAULTS, make } from './catalogue-scan.js';
 import { makeFolder, sentence, writeOutput } from '../files/disk.js';
@@ -38,12 +39,15 @@ const PASSING = ['out-of-memory', 'internal', 'load-failed', 'ENOSPC', 'EACCES',
  */
 export async function catalogue(task, { sources, site, jobs, title }, signal) {
   const steps = await stepsOf(task.prepare);
+  // That packages are missing is known before the work.
+  await compressorFor(task.write.meshopt);
+  await encoderFor(task.write.pictures);
   const scans = await scansIn(sources, site);
   if (scans.length === 0) throw new UsageError(`there are no scans in ${sources.join(', ')}`);
   await makeFolder(site);
   const before = await manifestOf(site);
   const whole = { ...task, own: { ...(task.own.lods ? { texture: DEFAULTS.texture } : DEFAULTS), ...task.own }, steps };
-  const options = JSON.stringify([await version(), whole.own, task.read, task.cloud, steps]);
+  const options = JSON.stringify([await version(), whole.own, task.read, task.cloud, steps, task.write]);
   /** @type {Map<string, Entry>} */
   const entries = new Map();
   /** @type {(Source & { key: string })[]} */

@@ -1,8 +1,9 @@
 /** The flags of each command, from the same tables as the package's options: `curvatureWeight` is `--curvature-weight`. */
 import { PointweaveError } from '../engine/errors.js';
 import { TARGETS } from '../engine/options-table.js';
-import { LODS, MAPS, TABLES } from '../engine/options.js';
-import { rule } from '../engine/rules.js';
+import { LODS, TABLES } from '../engine/options.js';
+import { MAPS } from '../engine/pictures.js';
+import { choice, rule } from '../engine/rules.js';
 import { FLAGS } from './flags-table.js';
 import { UsageError } from './usage.js';
 
@@ -25,6 +26,9 @@ export const WORDS = {
   faces: 'of a mesh: points are taken from its faces, or its vertices are the points',
   texture: 'pictures of the points on the mesh, so many texels wide; for GLB, USDZ and ZIP files',
   maps: 'which pictures',
+  scalar: "values in the place of colours: height, or an attribute's name",
+  range: 'the values that the ends of the colours stand for',
+  pictures: 'what the pictures of a GLB file are; webp needs @jsquash/webp, ktx2 needs ktx2-encoder',
   error: 'largest distance between the mesh as it was and as it is, a share of the diagonal',
   lods: 'most triangles of several meshes, instead of --triangles; the second is FILE.lod1.glb',
   size: 'of the picture, in pixels',
@@ -38,10 +42,13 @@ export const WORDS = {
 };
 
 /** `--texture 2048 --maps color,normal`. */
-const TEXTURES = { texture: TABLES.texture.size, maps: rule(`one of or both of ${MAPS.join(',')}`, (value) => typeof value === 'string' && value.split(',').every((name) => MAPS.includes(name))) };
+const TEXTURES = { texture: TABLES.texture.size, maps: rule(`one or more of ${MAPS.join(',')}`, (value) => typeof value === 'string' && value.split(',').every((name) => MAPS.includes(name))), scalar: TABLES.texture.scalar, range: rule('LOW,HIGH', (value, path) => TABLES.texture.range.accepts(rangeOf(value), path)) };
 
 /** `--lods 50000,10000,2000`. */
 const LEVELS = { lods: rule('1 to 8 numbers apart by commas, each less than the one before', (value, path) => LODS.accepts(numbersIn(value), path)) };
+
+/** How the models of a catalogue are compressed: as the element shows them. */
+const SHOWN = { pictures: choice('png', 'webp'), meshopt: TABLES.write.meshopt };
 
 /** `--size 800x600`. */
 const POSTERS = { ...TABLES.poster, size: rule('WIDTHxHEIGHT, each 16 to 4096', (value, path) => TABLES.poster.size.accepts(sizeOf(value), path)) };
@@ -66,7 +73,7 @@ export function flagsOf(command) {
   const { reduce: nested, ...surface } = TABLES.reconstruct;
   /** `reduce: false`. @type {Flag} */
   const none = { name: 'no-reduce', key: 'reduce', group: 'none', rule: nested, kind: 'value', words: WORDS.reduce };
-  return [...read, ...reduce, ...(command !== 'reduce' ? [none, ...flags('reconstruct', surface), ...flags('texture', { ...LEVELS, ...TEXTURES })] : []), ...(command === 'catalogue' ? [] : flags('write', TABLES.write))];
+  return [...read, ...reduce, ...(command !== 'reduce' ? [none, ...flags('reconstruct', surface), ...flags('texture', { ...LEVELS, ...TEXTURES })] : []), ...flags('write', command === 'catalogue' ? SHOWN : TABLES.write)];
 }
 
 /**
@@ -88,6 +95,11 @@ function flags(group, table) {
 /** @param {unknown} text @param {string} [mark] */
 function numbersIn(text, mark = ',') {
   return String(text).split(mark).map((digits) => (/^\d+$/.test(digits) ? Number(digits) : NaN));
+}
+
+/** @param {unknown} text */
+function rangeOf(text) {
+  return String(text).split(',').map((digits) => (digits.trim() === '' ? NaN : Number(digits)));
 }
 
 /** @param {unknown} text */
@@ -135,10 +147,12 @@ export function optionsFrom(command, values) {
   const reduces = Object.keys(given.reduce).length > 0;
   if ('reduce' in given.none && reduces) throw new UsageError('--no-reduce leaves nothing for the options of the reduction to say');
   const nested = reduces ? { reduce: given.reduce } : given.none;
-  const { texture: size, maps, lods } = given.texture;
+  const { texture: size, maps, lods, range, ...baked } = given.texture;
   if (lods !== undefined && given.reconstruct.triangles !== undefined) throw new UsageError('--lods and --triangles exclude each other');
   if (maps !== undefined && size === undefined) throw new UsageError('--maps says which pictures --texture makes');
-  const texture = size === undefined ? {} : { texture: { size, ...(maps && { maps: maps.split(',') }) } };
+  if (baked.scalar !== undefined && size === undefined) throw new UsageError('--scalar says what the pictures of --texture show');
+  if (range !== undefined && baked.scalar === undefined) throw new UsageError('--range says which values of --scalar the colours stand for');
+  const texture = size === undefined ? {} : { texture: { size, ...baked, ...(maps && { maps: maps.split(',') }), ...(range && { range: rangeOf(range) }) } };
   return { own: command === 'reduce' ? given.reduce : { ...nested, ...given.reconstruct, ...(lods !== undefined && { lods: numbersIn(lods) }), ...texture }, read: given.read, write: given.write };
 }
 

@@ -1,13 +1,12 @@
 /** Does what the command line asks for, one file after the other. */
 import { createEngine } from '../index.node.js';
-import { compressorFor } from '../files/compressor.js';
+import { compressorFor, encoderFor } from '../files/compressor.js';
 import { PointweaveError, toRecord } from '../engine/errors.js';
 import { Bar } from './bar.js';
 import { withSaid } from './cloud-flags.js';
 import { besideOf, checkPlace, levelName, makeFolder, openInput, sameFile, sentence, writeOutput } from '../files/disk.js';
 import { LIGHT } from './formats.js';
 import { say } from './say.js';
-import { bytesOf, skinOf } from './skin.js';
 import { stepsOf } from './prepare-flags.js';
 import { doubtLines, infoLines, lightLine, pointsOf, reasonLines, reportLine, stepsLine } from './report-text.js';
 import { UsageError } from './usage.js';
@@ -29,7 +28,9 @@ export async function run(task, signal) {
   if (task.tiles) return (await import('./tiles.js')).tiles(task, task.tiles, signal);
   await checkOutputs(task.jobs);
   const steps = await stepsOf(task.prepare);
-  await compressorFor(task.write.meshopt); // that its packages are missing is known before the work
+  // That packages are missing is known before the work.
+  await compressorFor(task.write.meshopt);
+  await encoderFor(task.write.pictures);
   if (task.folder) await makeFolder(task.folder);
   // A worker in any case: this thread has to hear Ctrl-C.
   const engine = await createEngine({ threads: task.threads, worker: true });
@@ -142,11 +143,11 @@ async function scanOf(engine, { command, read }, input, watch) {
   const name = input === '-' ? undefined : input;
   const file = await openInput(input, watch.signal);
   const whole = LIGHT.includes(command) && { faces: /** @type {const} */ ('mesh') };
-  const cloud = await engine.read(file, { name, beside: besideOf(input), ...whole, ...read, ...watch, transfer: command !== 'poster' });
+  const cloud = await engine.read(file, { name, beside: besideOf(input), ...whole, ...read, ...watch, transfer: true });
   if (cloud.positions.length === 0 && cloud.file.dropped > 0) {
     throw new PointweaveError({ code: 'empty-cloud', message: `the file has ${pointsOf(cloud.file.dropped)}, none of them finite` });
   }
-  return command === 'poster' ? { ...cloud, ...skinOf(await bytesOf(file), cloud) } : cloud;
+  return cloud;
 }
 
 /**

@@ -3,6 +3,7 @@ import { own } from './arrays.js';
 import { UNITS } from './axes.js';
 import { PointweaveError } from './errors.js';
 import { badInput, expectArray } from './inputs.js';
+import { MAPS, fileKey } from './pictures.js';
 import { joinedCloud } from '../files/joining.js';
 
 /** @import { PointCloud } from '../types.js' */
@@ -59,9 +60,9 @@ export function resultArgument(result, transfer) {
   const { indices, uvs, tangents, textures } = given;
   if (indices !== undefined) expectArray('indices', indices, Uint32Array);
   for (const [name, values] of Object.entries({ uvs, tangents })) if (values !== undefined) expectArray(name, values, Float32Array);
-  const [colorPicture, normalPicture] = ['color', 'normal'].map((name) => textures?.[name]?.data);
-  for (const [name, data] of Object.entries({ color: colorPicture, normal: normalPicture })) if (data !== undefined) expectArray(`textures.${name}.data`, data, Uint8Array);
-  return own({ indices, uvs, tangents, colorPicture, normalPicture, ...cloudFields(given) }, transfer);
+  const pictures = MAPS.map((name) => [fileKey(name), textures?.[name]?.data]);
+  for (const [i, [, data]] of pictures.entries()) if (data !== undefined) expectArray(`textures.${MAPS[i]}.data`, data, Uint8Array);
+  return own({ indices, uvs, tangents, ...Object.fromEntries(pictures), ...cloudFields(given) }, transfer);
 }
 
 /**

@@ -13,8 +13,10 @@ import { withInstance } from './instance.js';
 import { runHere } from './worker-host.js';
 import { checkCoreOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, lookedAt, preparedArgument, preparedOf } from './preparing.js';
+import { encoded, opened } from './pictures.js';
 import { posterArguments, posterOf } from './posing.js';
 import { badOption } from './rules.js';
+import { encoderFor } from '../files/compressor.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
@@ -124,8 +126,9 @@ async function simplify(place, mesh, options) {
 async function poster(place, what, options) {
   const { own, transfer, ...watch } = checkOptions('poster', options);
   watch.signal?.throwIfAborted();
-  const args = posterArguments(what, own, transfer);
-  return withModule(place, 'light', watch, async (ask) => posterOf(await ask({ call: 'poster', args }), args[1]));
+  const [shown, settings] = posterArguments(what, own, transfer);
+  const args = [await opened(shown, decoder(place, watch)), settings];
+  return withModule(place, 'light', watch, async (ask) => posterOf(await ask({ call: 'poster', args }), settings));
 }
 
 /** @param {Place} place @param {any} data @param {unknown} options */
@@ -140,10 +143,15 @@ async function read(place, data, options) {
   return readScan(open, file, { name: nameOf(data), ...own }, { signal, onProgress });
 }
 
+/** What reads pictures. @param {Place} place @param {import('./worker-host.js').Watch} watch @returns {import('./pictures.js').Decode} */
+function decoder(place, { signal }) {
+  return (file) => withModule(place, 'pictures', { signal }, (ask) => ask({ call: 'decodePicture', args: [file] }));
+}
+
 /** @param {Place} place @param {any} result @param {unknown} options */
 async function write(place, result, options) {
   const { own, transfer, ...watch } = checkOptions('write', options);
-  const { meshopt, up, ...plain } = own;
+  const { meshopt, pictures, up, ...plain } = own;
   if (meshopt) {
     throw new PointweaveError({
       code: 'bad-option',
@@ -153,7 +161,9 @@ async function write(place, result, options) {
     });
   }
   watch.signal?.throwIfAborted();
-  const args = [resultArgument(result, transfer), { ...plain, ...(up && { up: direction(up) }) }];
+  const encode = await encoderFor(pictures);
+  const given = resultArgument(result, transfer);
+  const args = [encode ? await encoded(given, decoder(place, watch), encode) : given, { ...plain, ...(up && { up: direction(up) }) }];
   return withModule(place, 'exports', watch, (ask) => ask({ call: 'write', args }));
 }
 

@@ -7,17 +7,19 @@ import { direction } from './axes.js';
 import { chooseBuild } from './choice.js';
 import { keepAlive } from './keep-alive.js';
 import { cloudArgument, resultArgument } from './clouds.js';
-import { left, lightened, meshArgument, ownMesh, pointsBeside, shownPoints } from './light.js';
-import { compressorFor } from '../files/compressor.js';
+import { baking, left, lightened, meshArgument, ownMesh, pointsBeside, shownPoints } from './light.js';
+import { compressorFor, encoderFor } from '../files/compressor.js';
 import { PointweaveError } from './errors.js';
 import { inProcessHost, workerHost } from './worker-host.js';
 import { sharedMemory } from './memory.js';
+import { encoded, opened } from './pictures.js';
 import { posterArguments, posterOf } from './posing.js';
 import { checkEngineOptions, checkModel, checkOptions } from './options.js';
 import { checkRecipe, halves, lookedAt, ofAllPoints, preparedArgument, preparedOf, split } from './preparing.js';
 import { readScan } from '../files/archive.js';
 import { readerError } from '../files/reading.js';
 import { signed } from './reports.js';
+import { unlessAborted } from './unless-aborted.js';
 import { byteSourceOf, nameOf } from '../files/byte-source.js';
 
 /** @import { Build, CallOptions, CloudInfo, EngineOptions, FileCloud, Model, PointCloud, ReadOptions, ReconstructOptions } from '../types.js' */
@@ -154,15 +156,17 @@ export class Engine {
    */
   async texture(mesh, cloud, options) {
     const { own, transfer, ...watch } = this.#check('texture', options);
-    const args = [meshArgument(mesh, transfer), pointsBeside(cloud, mesh), own];
-    return lightened(mesh, await this.#runIn('light', { call: 'texture', args }, watch));
+    const { args, range } = baking(pointsBeside(cloud, mesh, own), own);
+    const request = { call: /** @type {const} */ ('texture'), args: [meshArgument(mesh, transfer), ...args] };
+    return lightened(mesh, await this.#runIn('light', request, watch), range);
   }
 
   /** @param {PointCloud | import('../types.js').TriangleMesh} what @param {import('../types.js').PosterOptions & CallOptions} [options] */
   async poster(what, options) {
     const { own, transfer, ...watch } = this.#check('poster', options);
-    const args = posterArguments(what, own, transfer);
-    return posterOf(await this.#runIn('light', { call: 'poster', args }, watch), args[1]);
+    const [shown, settings] = posterArguments(what, own, transfer);
+    const args = [await opened(shown, this.#decoder(watch)), settings];
+    return posterOf(await this.#runIn('light', { call: 'poster', args }, watch), settings);
   }
 
   /** @param {PointCloud} cloud @param {CallOptions} [options] @returns {Promise<CloudInfo>} */
@@ -188,11 +192,14 @@ export class Engine {
   /** @param {PointCloud | ReducedCloud | SurfaceMesh} result @param {WriteOptions & CallOptions} [options] @returns {Promise<Uint8Array>} */
   async write(result, options) {
     const { own, transfer, ...watch } = this.#check('write', options);
-    const { meshopt, ...plain } = own;
+    const { meshopt, pictures, ...plain } = own;
     if (plain.up) plain.up = direction(plain.up);
     const compress = await compressorFor(meshopt);
+    const encode = await encoderFor(pictures);
+    const given = resultArgument(result, transfer);
+    const args = [encode ? await encoded(given, this.#decoder(watch), encode) : given, plain];
     /** @type {Uint8Array} */
-    const bytes = await this.#runIn('exports', { call: 'write', args: [resultArgument(result, transfer), plain] }, watch);
+    const bytes = await this.#runIn('exports', { call: 'write', args }, watch);
     return compress ? compress(bytes) : bytes;
   }
 
@@ -276,18 +283,19 @@ export class Engine {
     const budgets = lods ?? [own.triangles];
     if (budgets[0] === undefined && !texture) return this.#made(call, given, own, prepare, watch);
     const [first, second] = split(watch, texture ? TEXTURED : LIGHT);
-    const points = texture && shownPoints(given);
+    const points = texture && shownPoints(given, texture);
     const mesh = await this.#made(call, given, engineOwn, prepare, first);
     let rest = second;
     const levels = [];
     for (const [i, triangles] of budgets.entries()) {
       const after = budgets.length - i - 1;
       const [now, later] = split(rest, 1 / (after + 1));
-      const args = texture ? [ownMesh(mesh), left(points, mesh), { triangles, ...texture }] : [ownMesh(mesh), { triangles }];
+      const baked = texture && baking(left(points, mesh), texture, triangles);
+      const args = baked ? [ownMesh(mesh), ...baked.args] : [ownMesh(mesh), { triangles }];
       // The last call may have the memory.
       /** @type {Request} */
       const request = { call: texture ? 'texture' : 'simplify', args: after > 0 ? structuredClone(args) : args };
-      levels.push(lightened(mesh, await this.#runIn('light', request, now)));
+      levels.push(lightened(mesh, await this.#runIn('light', request, now), baked?.range));
       rest = later;
     }
     return lods ? { ...levels[0], lods: levels.slice(1) } : levels[0];
@@ -395,6 +403,11 @@ export class Engine {
     }
   }
 
+  /** What reads pictures. @param {Watch} watch @returns {import('./pictures.js').Decode} */
+  #decoder(watch) {
+    return (file) => this.#runIn('pictures', { call: 'decodePicture', args: [file] }, { signal: watch.signal });
+  }
+
   /** @returns {Promise<Host>} */
   async #start() {
     if (this.build === 'threads') {
@@ -426,19 +439,3 @@ export class Engine {
 }
 
 function nothing() {}
-
-/**
- * What `promise` gives, or the signal's reason as soon as it is aborted.
- * @template T
- * @param {Promise<T>} promise
- * @param {AbortSignal} signal
- * @returns {Promise<T>}
- */
-function unlessAborted(promise, signal) {
-  return new Promise((resolve, reject) => {
-    const abort = () => reject(signal.reason);
-    if (signal.aborted) return abort();
-    signal.addEventListener('abort', abort);
-    promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
-  });
-}

@@ -4,6 +4,7 @@
  */
 import { AXES, UNITS, isDirection } from './axes.js';
 import * as TABLE from './options-table.js';
+import { MAPS } from './pictures.js';
 import { colorOf, orbitOf } from './posing.js';
 import { RECIPE } from './preparing.js';
 import { badOption, checkTable, choice, defaultsOf, integer, isObject, nested, number, rule, toggle } from './rules.js';
@@ -31,12 +32,16 @@ const READ = {
   sentinels: choice('drop', 'keep'),
 };
 
+/** What pictures of a GLB file can be. */
+const PICTURES = ['png', 'webp', 'ktx2'];
+
 const WRITE = {
   format: choice('ply', 'xyz', 'glb', 'obj', 'stl', 'pcd', 'las', 'laz', '3mf', 'usdz', 'zip'),
   encoding: choice('binary', 'ascii'),
   quantize: toggle(false),
   up: { ...rule("'x', 'y', 'z', '-x', '-y', '-z' or three numbers", isDirection), names: Object.keys(AXES) },
   unit: { ...choice(...UNITS), fallback: undefined },
+  pictures: { ...rule(`${PICTURES.map((name) => `'${name}'`).join(', ')} or a function that encodes`, (value) => PICTURES.includes(/** @type {any} */ (value)) || typeof value === 'function', 'png'), names: PICTURES },
   meshopt: rule("true, false or compress of 'pointweave/meshopt'", (value) => typeof value === 'boolean' || typeof value === 'function', false),
 };
 
@@ -49,12 +54,11 @@ const SIMPLIFY = {
 export const LODS = rule('an array of 1 to 8 integers of at least 1, each less than the one before', (value) =>
   Array.isArray(value) && value.length > 0 && value.length <= 8 && value.every((n, i) => SIMPLIFY.triangles.accepts(n, '') && (i === 0 || n < value[i - 1])));
 
-/** The pictures that a mesh can have. */
-export const MAPS = ['color', 'normal'];
-
 const TEXTURE = {
   size: integer(64, 8192),
-  maps: rule(`an array of ${MAPS.map((name) => `'${name}'`).join(' and ')}`, (value) => Array.isArray(value) && value.every((name) => MAPS.includes(name))),
+  maps: rule(`an array of ${MAPS.map((name) => `'${name}'`).join(', ')}`, (value) => Array.isArray(value) && value.every((name) => MAPS.includes(name))),
+  scalar: rule("'height' or the name of an attribute", (value) => typeof value === 'string' && value !== ''),
+  range: rule('two finite numbers, the first less than the second', (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite) && value[0] < value[1]),
 };
 
 const side = integer(16, 4096);
@@ -118,6 +122,8 @@ export function checkOptions(call, options = {}) {
   const { signal, onProgress, transfer, ...own } = checkTable(table, options, '');
   if (call === 'write') checkCompression(own);
   if (own.lods && own.triangles !== undefined) throw badOption('triangles', 'undefined where lods are given', own.triangles);
+  const baked = /** @type {Record<string, any> | undefined} */ (call === 'texture' ? own : own.texture);
+  if (baked?.range && baked.scalar === undefined) throw badOption('range', 'undefined, unless scalar says of what', baked.range);
   if (call === 'simplify' && own.triangles === undefined && own.error === undefined) throw badOption('triangles', 'a number of triangles, or error', undefined);
   return /** @type {any} */ ({ own, signal, onProgress, transfer });
 }
@@ -148,10 +154,10 @@ export function checkCoreOptions(options = {}) {
 }
 
 /** @param {Record<string, unknown>} options of `write` */
-function checkCompression({ format = WRITE.format.fallback, quantize, meshopt }) {
-  for (const [option, value] of Object.entries({ quantize, meshopt })) {
-    if (value && format !== 'glb') throw badOption(option, "false, unless format is 'glb'", value);
-  }
+function checkCompression({ format = WRITE.format.fallback, quantize, meshopt, pictures }) {
+  if (format === 'glb') return;
+  for (const [option, value] of Object.entries({ quantize, meshopt })) if (value) throw badOption(option, "false, unless format is 'glb'", value);
+  if (pictures !== undefined && pictures !== 'png') throw badOption('pictures', "'png', unless format is 'glb'", pictures);
 }
 
 /** One file, where a folder is expected. @param {unknown} value */

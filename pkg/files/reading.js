@@ -56,9 +56,9 @@ export async function readerOf(file, format) {
  */
 export async function readFile(ask, file, options, watch, helpers) {
   const columns = new PointColumns();
-  const { summary, indices } = await readBlocks(ask, file, options, watch, helpers, (block, expected) => void columns.add(block, expected));
+  const { summary, indices, skin } = await readBlocks(ask, file, options, watch, helpers, (block, expected) => void columns.add(block, expected));
   const cloud = columns.finish(summary);
-  return indices ? { ...cloud, indices } : cloud;
+  return indices ? { ...cloud, indices, ...(skin && (await worn(skin, helpers.decode))) } : cloud;
 }
 
 /**
@@ -69,7 +69,7 @@ export async function readFile(ask, file, options, watch, helpers) {
  * @param {{ signal: AbortSignal, onProgress?: (progress: Progress) => void }} watch
  * @param {Helpers} helpers
  * @param {(block: Block, expected: number) => Promise<void> | void} take a block, and how many points there will be in all, as far as can be told
- * @returns {Promise<{ summary: Summary, indices?: Uint32Array }>}
+ * @returns {Promise<{ summary: Summary, indices?: Uint32Array, skin?: Skin }>}
  */
 export async function readBlocks(ask, file, options, { signal, onProgress }, { find, decode }, take) {
   let told = 0;
@@ -101,12 +101,12 @@ export async function readBlocks(ask, file, options, { signal, onProgress }, { f
     tell((at / file.size) * (points > 0 ? 0.99 : 0.5));
   }
   for (;;) {
-    /** @type {{ block?: Block, indices?: Uint32Array, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
-    const { block, indices, summary, want } = await ask({ call: 'readEnd', args: [] });
+    /** @type {{ block?: Block, skin?: Skin, indices?: Uint32Array, summary?: Summary, want?: { file?: string, picture?: Uint8Array } }} */
+    const { block, skin, indices, summary, want } = await ask({ call: 'readEnd', args: [] });
     const expected = await add(block, file.size);
     if (summary) {
       tell(1);
-      return { summary, indices };
+      return { summary, indices, skin };
     }
     if (want?.file !== undefined) await ask({ call: 'readFile', args: [await find(want.file)] });
     if (want?.picture) {
@@ -115,6 +115,28 @@ export async function readBlocks(ask, file, options, { signal, onProgress }, { f
     }
     tell(0.5 + 0.49 * Math.min(1, points / Math.max(expected, 1)));
   }
+}
+
+/** Files of pictures, and where the vertices are in them. @typedef {{ uvs: Float32Array, tangents?: Float32Array } & Record<string, any>} Skin */
+
+/**
+ * What is worn of a mesh's pictures, with their sizes; one that cannot be read is left out.
+ * @param {Skin} skin
+ * @param {Helpers['decode']} decode
+ */
+async function worn({ uvs, tangents, ...files }, decode) {
+  /** @type {Record<string, import('../types.js').Texture>} */
+  const textures = {};
+  for (const [map, data] of Object.entries(files)) {
+    const picture = data && (await decode(data.slice()));
+    if (picture) textures[map] = { width: picture.width, height: picture.height, data, type: typeOf(data) };
+  }
+  return { uvs, ...(tangents && { tangents }), textures };
+}
+
+/** What a file is that is one of the three. @param {Uint8Array} file @returns {import('../types.js').Texture['type']} */
+function typeOf([first]) {
+  return first === 0x89 ? 'image/png' : first === 0xff ? 'image/jpeg' : 'image/webp';
 }
 
 /**

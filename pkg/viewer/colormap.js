@@ -16,7 +16,7 @@ export const UNKNOWN = /** @type {const} */ ([150, 150, 150]);
 
 const SIZE = 256;
 /** sRGB triples from the least value to the greatest. */
-const TABLE = Uint8Array.from({ length: 3 * SIZE }, (_, i) => colorAt(Math.floor(i / 3) / (SIZE - 1))[i % 3]);
+export const RAMP = Uint8Array.from({ length: 3 * SIZE }, (_, i) => colorAt(Math.floor(i / 3) / (SIZE - 1))[i % 3]);
 
 /**
  * sRGB triples of values between `low` and `high`; those beyond take the colour of the end, NaN is {@link UNKNOWN}.
@@ -33,7 +33,7 @@ export function colorize(values, low, high) {
       continue;
     }
     const at = 3 * Math.round(Math.min(SIZE - 1, Math.max(0, (values[i] - low) * scale)));
-    for (let c = 0; c < 3; c++) out[3 * i + c] = TABLE[at + c];
+    for (let c = 0; c < 3; c++) out[3 * i + c] = RAMP[at + c];
   }
   return out;
 }

@@ -1,5 +1,5 @@
 /** The materials of layers. */
-import { Color, DoubleSide, LineBasicMaterial, MeshMatcapMaterial, ShaderMaterial } from 'three';
+import { Color, DoubleSide, LineBasicMaterial, MeshMatcapMaterial, ShaderMaterial, UniformsLib, UniformsUtils } from 'three';
 import { studioMatcap } from './matcap.js';
 
 /** What is known of a cloud's normals. @typedef {'none' | 'oriented' | 'unoriented'} Normals */
@@ -18,9 +18,12 @@ export function meshMaterial(look) {
   material.userData.measured = measured;
   material.onBeforeCompile = (shader) => {
     shader.uniforms.measured = measured;
+    // Those of `aoMap`, which a matcap has not by itself.
+    Object.assign(shader.uniforms, UniformsUtils.clone(UniformsLib.aomap));
     shader.fragmentShader = shader.fragmentShader
       .replace('void main() {', /* glsl */ `
         uniform float measured;
+        #include <aomap_pars_fragment>
         void main() {`)
       .replace('#include <normal_fragment_begin>', /* glsl */ `
         vec3 normal = normalize(vNormal);
@@ -31,6 +34,9 @@ export function meshMaterial(look) {
         #endif
         vec3 nonPerturbedNormal = normal;`)
       .replace('#include <opaque_fragment>', /* glsl */ `
+        #ifdef USE_AOMAP
+          outgoingLight *= texture2D(aoMap, vAoMapUv).r;
+        #endif
         if (inner) outgoingLight *= vec3(0.8, 0.72, 0.67);
         float light = dot(matcapColor.rgb, vec3(0.2126, 0.7152, 0.0722));
         outgoingLight = mix(outgoingLight, diffuseColor.rgb * (0.78 + 0.3 * light), measured);

@@ -5,7 +5,7 @@ import { BufferAttribute, LinearSRGBColorSpace, SRGBColorSpace, Texture } from '
 /** @import { Drawable } from '../viewer.js' */
 
 /** By which of its maps a material takes a picture, and what its numbers are. */
-const MAPS = /** @type {const} */ ({ color: ['map', SRGBColorSpace], normal: ['normalMap', LinearSRGBColorSpace] });
+const MAPS = /** @type {const} */ ({ color: ['map', SRGBColorSpace], normal: ['normalMap', LinearSRGBColorSpace], occlusion: ['aoMap', LinearSRGBColorSpace] });
 
 /**
  * Puts the pictures of a mesh on it, as soon as the browser has decoded them; one that cannot be decoded is left out.
@@ -16,7 +16,7 @@ const MAPS = /** @type {const} */ ({ color: ['map', SRGBColorSpace], normal: ['n
 export function wear({ geometry, material }, { uvs, tangents, textures = {} }, changed) {
   geometry.setAttribute('uv', new BufferAttribute(/** @type {Float32Array} */ (uvs), 2));
   if (tangents) geometry.setAttribute('tangent', new BufferAttribute(tangents, 4));
-  const worn = /** @type {import('three').MeshMatcapMaterial} */ (material);
+  const worn = /** @type {import('three').MeshMatcapMaterial & { aoMap: Texture | null }} */ (material);
   for (const [name, [map, space]] of Object.entries(MAPS)) {
     const picture = textures[/** @type {keyof typeof MAPS} */ (name)];
     if (!picture || (map === 'normalMap' && !tangents)) continue;

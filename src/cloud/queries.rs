@@ -205,7 +205,7 @@ impl Nearer {
 }
 
 /// Keeps the `k` smallest by (distance, index), ascending.
-fn insert(out: &mut Vec<Neighbor>, k: usize, n: Neighbor) {
+pub(crate) fn insert(out: &mut Vec<Neighbor>, k: usize, n: Neighbor) {
     if out.len() == k {
         let last = out[k - 1];
         if (n.distance2, n.index) >= (last.distance2, last.index) {

@@ -1,7 +1,7 @@
 //! Binary glTF 2.0 (Khronos): the vertices of its scene, each mesh as often as a node places it, at that place. Normals and
 //! the first set of colours are taken where every mesh has them. Quantised and sparse values are read; compressed meshes
 //! (Draco, meshopt) and data outside of the file are not. Where points are taken from its triangles, they have the colours of
-//! its materials and their textures.
+//! its materials and their textures. A mesh of one material keeps these (`skin`).
 //!
 //! Why not the crate `gltf`: it trusts what a file says of its own bytes, knows of no quantised positions, and is larger
 //! than all readers here together.
@@ -9,11 +9,13 @@
 mod accessor;
 mod materials;
 mod scene;
+mod skin;
 
 use super::colors::ColorRange;
 use super::faces::triangles::{Face, Faces, NONE};
 use super::input::Input;
 use super::parser::{Parser, Step};
+use super::raw_cloud::Skin;
 use super::table::{Columns, Table};
 use crate::base::error::Result;
 use crate::base::srgb::srgb;
@@ -30,11 +32,18 @@ pub(super) struct Glb {
     count: u64,
     /// Where they are wanted.
     faces: Option<Faces>,
+    /// Whether the pictures are wanted as they are; and these.
+    wears: bool,
+    skin: Option<Skin>,
 }
 
 impl Glb {
-    pub(super) fn new(faces: Option<Faces>) -> Glb {
-        Glb { count: 0, faces }
+    pub(super) fn new(faces: Option<Faces>, wears: bool) -> Glb {
+        Glb {
+            faces,
+            wears,
+            ..Glb::default()
+        }
     }
 }
 
@@ -79,6 +88,9 @@ impl Parser for Glb {
             Some(faces) => materials::looks(&document, buffer, faces),
             None => Vec::new(),
         };
+        if let ([part], true) = (&parts[..], self.wears) {
+            self.skin = skin::of(part, &document, buffer, input)?;
+        }
         for part in &parts {
             self.push(part, &document, buffer, &placings, input, table)?;
         }
@@ -95,6 +107,10 @@ impl Parser for Glb {
 
     fn take_faces(&mut self) -> Option<Faces> {
         self.faces.take()
+    }
+
+    fn take_skin(&mut self) -> Option<Skin> {
+        self.skin.take()
     }
 }
 

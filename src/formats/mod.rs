@@ -57,6 +57,7 @@ mod parser;
 mod raw_cloud;
 mod reading;
 mod stations;
+mod opening;
 mod options;
 #[cfg(feature = "packed")]
 mod packed;

@@ -3,6 +3,7 @@
 use super::faces::triangles::Faces;
 use super::input::Input;
 use super::preview::Preview;
+use super::raw_cloud::Skin;
 use super::table::Table;
 use crate::base::error::Result;
 use crate::cloud::{Crs, Unit};
@@ -25,6 +26,12 @@ pub(super) trait Parser {
 
     /// The faces over the rows of the table, once all was parsed and where they are wanted.
     fn take_faces(&mut self) -> Option<Faces> {
+        None
+    }
+
+    /// The pictures on the faces, and where the rows of the table are in them, once all was parsed and where one set of pictures is all that
+    /// there is.
+    fn take_skin(&mut self) -> Option<Skin> {
         None
     }
 

@@ -44,10 +44,12 @@ pub struct Skin {
     pub uvs: Vec<f32>,
     /// Four a point: a unit vector, and the sign of the bitangent.
     pub tangents: Option<Vec<f32>>,
-    /// The colours, as the bytes of a PNG file.
+    /// The colours, as the bytes of a PNG file; in a GLB also of a JPEG, WebP or KTX2 file, as the others.
     pub color: Option<Vec<u8>>,
-    /// The normals in the tangents' frames, as the bytes of a PNG file.
+    /// The normals in the tangents' frames.
     pub normal: Option<Vec<u8>>,
+    /// How open the surface is to the light around, in red.
+    pub occlusion: Option<Vec<u8>>,
 }
 
 /// What a file holds, in the file's frame and unit: the caller's arrays, not yet a [`Cloud`]. May have no points.

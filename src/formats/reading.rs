@@ -6,16 +6,15 @@ use super::faces::triangles::Faces;
 use super::faces::{self, FaceMode, Picture, Sampling, Want};
 use super::format::Format;
 use super::input::{Input, Place};
+use super::opening::parser;
 use super::options::ReadOptions;
 use super::parser::{Parser, Step};
 use super::preview::Preview;
-use super::raw_cloud::{Positions, RawCloud};
+use super::raw_cloud::{Positions, RawCloud, Skin};
 use super::sentinels::LeftOut;
 use super::stations::Stations;
 use super::table::Table;
 use super::text::MARK;
-#[cfg(feature = "files")]
-use super::{grid, obj, off, pcd, ply, ptx, splats, stl, xyz};
 use crate::base::error::Result;
 use crate::cloud::{Crs, Unit};
 
@@ -38,6 +37,8 @@ pub struct Reading {
     sampled: Sampling,
     /// The triangles, where they come along.
     indices: Vec<u32>,
+    /// The pictures on them.
+    skin: Option<Skin>,
     parser: Option<Box<dyn Parser>>,
     table: Option<Table>,
     /// What the parser has not taken yet, and where it starts.
@@ -95,6 +96,7 @@ impl Reading {
             triangles: 0,
             sampled: Sampling::default(),
             indices: Vec::new(),
+            skin: None,
             parser: None,
             table: None,
             kept: Vec::new(),
@@ -179,6 +181,12 @@ impl Reading {
         std::mem::take(&mut self.indices)
     }
 
+    /// The pictures on the triangles, and where the points are in them: those of a GLB whose triangles all wear the same; none unless
+    /// [`FaceMode::Mesh`] asks for them.
+    pub fn take_skin(&mut self) -> Option<Skin> {
+        self.skin.take()
+    }
+
     /// Puts points of the faces in the place of the vertices, or the triangles beside them.
     fn sample(&mut self) {
         let Some(faces) = self.faces.take().filter(|_| HAVE_FACES) else {
@@ -195,6 +203,8 @@ impl Reading {
             let mut table = Table::of(cloud);
             (table.dropped, table.replaced, table.invalid) = (dropped, replaced, invalid);
             (self.indices, self.sampled) = (indices, sampled);
+            let skin = self.parser.as_mut().and_then(|parser| parser.take_skin());
+            self.skin = skin.filter(|skin| skin.uvs.len() as u64 == 2 * table.rows);
             self.table = Some(table);
             return;
         }
@@ -385,65 +395,4 @@ impl Reading {
         }
         Ok(self.format)
     }
-}
-
-#[cfg_attr(
-    not(any(
-        feature = "e57",
-        feature = "files",
-        feature = "las",
-        feature = "packed"
-    )),
-    expect(
-        unreachable_code,
-        reason = "builds of writers and pictures have no reader"
-    )
-)]
-fn parser(format: Format, options: &ReadOptions) -> Result<Box<dyn Parser>> {
-    let faces = || (options.faces != FaceMode::Vertices).then(Faces::default);
-    Ok(match format {
-        #[cfg(feature = "files")]
-        Format::Ply => Box::new(ply::Ply::new(faces())),
-        #[cfg(feature = "files")]
-        Format::Xyz => Box::new(xyz::Xyz::new(options)),
-        #[cfg(feature = "files")]
-        Format::Pcd => Box::new(pcd::Pcd::default()),
-        #[cfg(feature = "files")]
-        Format::Obj => Box::new(obj::Obj::new(faces())),
-        #[cfg(feature = "files")]
-        Format::Off => Box::new(off::Off::new(faces())),
-        #[cfg(feature = "files")]
-        Format::Stl => Box::new(stl::Stl::new(faces())),
-        #[cfg(feature = "files")]
-        Format::Ptx => Box::new(ptx::Ptx::new(options)),
-        #[cfg(feature = "files")]
-        Format::Grid => Box::new(grid::Raster::new(options)),
-        #[cfg(feature = "files")]
-        Format::Splat => Box::new(splats::Splats),
-        #[cfg(feature = "packed")]
-        Format::Spz => Box::new(super::packed::Spz),
-        #[cfg(feature = "packed")]
-        Format::Tiff => Box::new(super::packed::Tiff::new(options)),
-        #[cfg(feature = "packed")]
-        Format::ThreeMf => Box::new(super::packed::ThreeMf::new(faces())),
-        #[cfg(feature = "packed")]
-        Format::Glb => Box::new(super::glb::Glb::new(faces())),
-        #[cfg(feature = "las")]
-        Format::Las => Box::new(super::las::Las::default()),
-        #[cfg(feature = "e57")]
-        Format::E57 => Box::new(super::e57::E57::default()),
-        #[cfg(not(all(
-            feature = "e57",
-            feature = "files",
-            feature = "las",
-            feature = "packed"
-        )))]
-        other => {
-            return Err(crate::base::error::Error::UnsupportedFile {
-                format: other.title(),
-                expected: "a build with its reader".into(),
-                found: "one without".into(),
-            });
-        }
-    })
 }

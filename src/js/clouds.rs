@@ -43,13 +43,36 @@ extern "C" {
     #[cfg(any(feature = "exports", feature = "light"))]
     #[wasm_bindgen(method, getter)]
     pub fn tangents(this: &PointCloud) -> Option<Float32Array>;
-    /// The bytes of PNG files.
-    #[cfg(any(feature = "exports", feature = "light"))]
+    /// The bytes of picture files.
+    #[cfg(feature = "exports")]
     #[wasm_bindgen(method, getter, js_name = colorPicture)]
     pub fn color_picture(this: &PointCloud) -> Option<Uint8Array>;
-    #[cfg(any(feature = "exports", feature = "light"))]
+    #[cfg(feature = "exports")]
     #[wasm_bindgen(method, getter, js_name = normalPicture)]
     pub fn normal_picture(this: &PointCloud) -> Option<Uint8Array>;
+    #[cfg(feature = "exports")]
+    #[wasm_bindgen(method, getter, js_name = occlusionPicture)]
+    pub fn occlusion_picture(this: &PointCloud) -> Option<Uint8Array>;
+    /// What is in them.
+    #[cfg(feature = "light")]
+    #[wasm_bindgen(method, getter, js_name = colorPixels)]
+    pub fn color_pixels(this: &PointCloud) -> Option<Decoded>;
+    #[cfg(feature = "light")]
+    #[wasm_bindgen(method, getter, js_name = normalPixels)]
+    pub fn normal_pixels(this: &PointCloud) -> Option<Decoded>;
+    #[cfg(feature = "light")]
+    #[wasm_bindgen(method, getter, js_name = occlusionPixels)]
+    pub fn occlusion_pixels(this: &PointCloud) -> Option<Decoded>;
+
+    /// A picture as the build of pictures gives it: `{ width, height, pixels }`, four bytes a pixel.
+    #[cfg(feature = "light")]
+    pub type Decoded;
+    #[cfg(feature = "light")]
+    #[wasm_bindgen(method, getter)]
+    pub fn width(this: &Decoded) -> f64;
+    #[cfg(feature = "light")]
+    #[wasm_bindgen(method, getter)]
+    pub fn pixels(this: &Decoded) -> Uint8Array;
 }
 
 impl PointCloud {

@@ -9,8 +9,8 @@ use crate::js::values::to_js;
 use crate::js::{JsResult, object, optional};
 use crate::light::{Painted, SimplifyParams};
 use crate::pipeline;
-use crate::poster::{PosterParams, Reach, Scene, View};
-use crate::texture::{Map, Texture, TextureParams};
+use crate::poster::{Pixels, PosterParams, Reach, Scene, View};
+use crate::texture::{Map, Paint, Texture, TextureParams};
 use js_sys::{
     Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array,
 };
@@ -44,7 +44,7 @@ pub fn simplify(mesh: &PointCloud, settings: &SimplifySettings, progress: Functi
 
 #[wasm_bindgen]
 extern "C" {
-    /// `{ triangles, size, maps }`; `pkg/engine/options.js` has checked their types.
+    /// `{ triangles, size, maps, ramp }`; `pkg/engine/options.js` has checked their types.
     pub type TextureSettings;
     #[wasm_bindgen(method, getter, js_name = triangles)]
     fn most(this: &TextureSettings) -> Option<f64>;
@@ -52,9 +52,12 @@ extern "C" {
     fn size(this: &TextureSettings) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     fn maps(this: &TextureSettings) -> Option<Array>;
+    /// Colours of the values that are the scan's attribute, three bytes each.
+    #[wasm_bindgen(method, getter)]
+    fn ramp(this: &TextureSettings) -> Option<Uint8Array>;
 }
 
-/// [`pipeline::texture`] of a mesh and the scan's positions and colours: what [`simplify`] gives, and `{ uvs, tangents, textures }`.
+/// [`pipeline::texture`] of a mesh and the scan's positions, and its colours or its attribute: what [`simplify`] gives, and `{ uvs, tangents, textures }`.
 #[wasm_bindgen]
 pub fn texture(
     mesh: &PointCloud,
@@ -65,6 +68,7 @@ pub fn texture(
     let maps = settings.maps().map(|names| {
         let named = |name: JsValue| match name.as_string().as_deref() {
             Some("normal") => Map::Normal,
+            Some("occlusion") => Map::Occlusion,
             _ => Map::Color,
         };
         names.iter().map(named).collect()
@@ -81,11 +85,19 @@ pub fn texture(
         Positions::F32(values) => values.into_iter().map(f64::from).collect(),
         Positions::F64(values) => values,
     };
-    let colors = scan.colors.as_ref().map(|colors| colors.as_chunks().0);
+    let ramp = settings.ramp().map(|ramp| ramp.to_vec());
+    let paint = match (&ramp, &scan.attributes[..], &scan.colors) {
+        (Some(ramp), [attribute], _) => Paint::Scalars {
+            values: &attribute.values,
+            ramp: ramp.as_chunks().0,
+        },
+        (_, _, Some(colors)) => Paint::Colors(colors.as_chunks().0),
+        _ => Paint::Nothing,
+    };
     let mut progress = JsProgress(progress);
     let (textured, report) = pipeline::texture(
         (&cloud, &indices),
-        (&points, colors),
+        (&points, paint),
         triangles,
         &params,
         &mut progress,
@@ -102,6 +114,7 @@ pub fn texture(
         let name = match map {
             Map::Color => "color",
             Map::Normal => "normal",
+            Map::Occlusion => "occlusion",
         };
         let texture = object([
             ("width", (*width as f64).into()),
@@ -158,8 +171,21 @@ pub fn poster(what: &PointCloud, settings: &PosterSettings, progress: Function) 
     let indices = what.indices().map(|indices| indices.to_vec());
     let uvs = what.uvs().map(|uvs| uvs.to_vec());
     let tangents = what.tangents().map(|tangents| tangents.to_vec());
-    let [color, normal] =
-        [what.color_picture(), what.normal_picture()].map(|file| file.map(|file| file.to_vec()));
+    let pictures = [
+        what.color_pixels(),
+        what.normal_pixels(),
+        what.occlusion_pixels(),
+    ];
+    let pictures = pictures.map(|decoded| {
+        decoded.map(|decoded| (decoded.width() as usize, decoded.pixels().to_vec()))
+    });
+    let [color, normal, occlusion] = pictures.each_ref().map(|picture| {
+        let picture = picture.as_ref();
+        picture.map(|(width, rgba)| Pixels {
+            width: *width,
+            rgba,
+        })
+    });
     let scene = Scene {
         points: &cloud.points,
         triangles: indices.as_deref().map(|corners| corners.as_chunks().0),
@@ -167,8 +193,9 @@ pub fn poster(what: &PointCloud, settings: &PosterSettings, progress: Function) 
         colors: cloud.colors.as_deref(),
         uvs: uvs.as_deref().map(|uvs| uvs.as_chunks().0),
         tangents: tangents.as_deref().map(|tangents| tangents.as_chunks().0),
-        color: color.as_deref(),
-        normal: normal.as_deref(),
+        color,
+        normal,
+        occlusion,
     };
     let params = PosterParams {
         size: [settings.width(), settings.height()].map(|n| n as usize),

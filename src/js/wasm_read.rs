@@ -7,7 +7,7 @@ use crate::base::error::Error;
 use crate::formats::Archive;
 use crate::formats::{
     Block, ColorValues, FaceMode, Format, LeftOut, Picture, Positions, Preview, ReadOptions,
-    Reading, Stations, Summary, Want,
+    Reading, Skin, Stations, Summary, Want,
 };
 use crate::js::{JsResult, object, optional};
 use js_sys::{Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array};
@@ -110,7 +110,7 @@ pub fn read_push(bytes: &[u8]) -> JsResult {
     })
 }
 
-/// After the last bytes: `{ block, indices, summary, want }`: the triangles where they come along, the summary when all is read, the last where something else is needed for
+/// After the last bytes: `{ block, skin, indices, summary, want }`: the triangles and their pictures where they come along, the summary when all is read, the last where something else is needed for
 /// that: `{ file }` by its name, which [`read_file`] gives, or the pixels of a `{ picture }`'s bytes, which [`read_picture`] gives.
 #[wasm_bindgen(js_name = readEnd)]
 pub fn read_end() -> JsResult {
@@ -131,8 +131,10 @@ pub fn read_end() -> JsResult {
             false => reading.take_indices(),
         };
         let indices = (!indices.is_empty()).then_some(indices);
+        let skin = reading.take_skin();
         object([
             ("block", block(reading)?),
+            ("skin", skin.as_ref().map_or(Ok(JsValue::UNDEFINED), worn)?),
             (
                 "indices",
                 optional(&indices, |indices| Uint32Array::from(&indices[..])),
@@ -291,6 +293,21 @@ fn summary(summary: &Summary) -> JsResult {
                 None => JsValue::UNDEFINED,
             },
         ),
+    ])
+}
+
+/// `{ uvs, tangents, color, normal, occlusion }`: places, frames, and the bytes of picture files.
+fn worn(skin: &Skin) -> JsResult {
+    let bytes = |file: &Option<Vec<u8>>| optional(file, |file| Uint8Array::from(&file[..]));
+    object([
+        ("uvs", Float32Array::from(&skin.uvs[..]).into()),
+        (
+            "tangents",
+            optional(&skin.tangents, |values| Float32Array::from(&values[..])),
+        ),
+        ("color", bytes(&skin.color)),
+        ("normal", bytes(&skin.normal)),
+        ("occlusion", bytes(&skin.occlusion)),
     ])
 }
 

@@ -50,6 +50,7 @@ pub fn write(result: &PointCloud, options: &WriteSettings) -> Result<Uint8Array,
             tangents: result.tangents().map(|values| values.to_vec()),
             color: result.color_picture().map(|bytes| bytes.to_vec()),
             normal: result.normal_picture().map(|bytes| bytes.to_vec()),
+            occlusion: result.occlusion_picture().map(|bytes| bytes.to_vec()),
         })
     });
     let bytes = formats::write(&cloud, indices.as_deref(), format, options)?;

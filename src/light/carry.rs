@@ -21,10 +21,16 @@ impl Spot {
     /// The place of `mesh` nearest to `point`; `tree` is of its triangles.
     pub(crate) fn nearest(point: Vec3, mesh: &Mesh, tree: &TriangleTree, hint: &mut u32) -> Spot {
         *hint = tree.closest(point, *hint).1;
-        let corners = mesh.triangles[*hint as usize].map(|v| mesh.vertices[v as usize].as_dvec3());
+        Spot::on(*hint, point, mesh)
+    }
+
+    /// The place of a triangle nearest to `point`.
+    pub(crate) fn on(triangle: u32, point: Vec3, mesh: &Mesh) -> Spot {
+        let corners =
+            mesh.triangles[triangle as usize].map(|v| mesh.vertices[v as usize].as_dvec3());
         let at = closest_on_triangle(point.as_dvec3(), corners);
         Spot {
-            triangle: *hint,
+            triangle,
             weights: weights(at, corners),
         }
     }

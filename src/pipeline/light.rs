@@ -6,7 +6,7 @@ use crate::cloud::{Attribute, Cloud};
 use crate::light::{self, Painted, SimplifyParams};
 use crate::pipeline::results::Surface;
 use crate::report::LightReport;
-use crate::texture::{self, Scan, TextureParams, Textured};
+use crate::texture::{self, Paint, Scan, TextureParams, Textured};
 use glam::Vec3;
 
 /// Takes any list of triangles to fewer of them. `cloud` holds the vertices with what they carry, `indices` three a triangle. The
@@ -25,19 +25,19 @@ pub fn simplify(
     light::simplify(&light::weld(cloud, indices)?, params, progress)
 }
 
-/// Textures a mesh, of `triangles` at most where they are given, with what is lost of it and with the colours of a scan: `points` in
-/// the caller's frame, and one colour each. The report says what fewer triangles cost.
+/// Textures a mesh, of `triangles` at most where they are given, with what is lost of it and with what a scan shows: `points` in
+/// the caller's frame, and the colours or values of each. The report says what fewer triangles cost.
 ///
 /// # Errors
-/// Those of [`simplify`]; [`crate::Error::BadOption`] for a size out of range, or too small for so many triangles.
+/// Those of [`simplify`]; [`crate::Error::BadOption`] for a size out of range, or too small for so many triangles; [`crate::Error::BadLength`].
 pub fn texture(
     mesh: (&Cloud, &[u32]),
-    scan: (&[f64], Option<&[[u8; 3]]>),
+    scan: (&[f64], Paint),
     triangles: Option<usize>,
     params: &TextureParams,
     progress: &mut dyn Progress,
 ) -> Result<(Textured, Option<LightReport>)> {
-    let ((cloud, indices), (points, colors)) = (mesh, scan);
+    let ((cloud, indices), (points, paint)) = (mesh, scan);
     let mut full = light::weld(cloud, indices)?;
     if full.mesh.normals.is_empty() {
         full.mesh.normals = light::normals(&full.mesh);
@@ -60,7 +60,7 @@ pub fn texture(
     let points: Vec<Vec3> = points.chunks_exact(3).map(unit).collect();
     let scan = Scan {
         points: &points,
-        colors,
+        paint,
     };
     let textured = texture::bake(&full.mesh, &light, scan, params, progress)?;
     Ok((textured, report))

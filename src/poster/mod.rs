@@ -36,7 +36,7 @@ use png::ColorType;
 use strip::Strip;
 
 pub use camera::{Reach, View};
-pub use scene::Scene;
+pub use scene::{Pixels, Scene};
 
 /// Sides of a picture, in pixels.
 const SIZES: [usize; 2] = [16, 4096];

@@ -1,4 +1,6 @@
-//! The pictures of a mesh, out of PNG files.
+//! The pictures of a mesh.
+
+use super::scene::Pixels;
 
 /// A picture with its smaller copies, each of half the size.
 pub(super) struct Mipmaps {
@@ -14,28 +16,14 @@ struct Level {
 }
 
 impl Mipmaps {
-    /// `None` for bytes that are no such file. `meaning` is what a byte says.
-    pub(super) fn of(file: &[u8], meaning: impl Fn(u8) -> f32) -> Option<Mipmaps> {
-        use png::{ColorType, Decoder, Transformations};
-        let mut decoder = Decoder::new(std::io::Cursor::new(file));
-        decoder.set_transformations(Transformations::normalize_to_color8());
-        let mut reader = decoder.read_info().ok()?;
-        let mut bytes = vec![0; reader.output_buffer_size()?];
-        let info = reader.next_frame(&mut bytes).ok()?;
-        let channels = match info.color_type {
-            ColorType::Rgb => 3,
-            ColorType::Rgba => 4,
-            _ => return None,
-        };
+    /// `meaning` is what a byte says.
+    pub(super) fn of(Pixels { width, rgba }: Pixels, meaning: impl Fn(u8) -> f32) -> Mipmaps {
         let meanings = std::array::from_fn(|byte| meaning(byte as u8));
-        let of = |p: &[u8]| [p[0], p[1], p[2]];
+        let (pixels, _) = rgba.as_chunks::<4>();
         let mut levels = vec![Level {
-            width: info.width as usize,
-            height: info.height as usize,
-            pixels: bytes[..info.buffer_size()]
-                .chunks_exact(channels)
-                .map(of)
-                .collect(),
+            width,
+            height: pixels.len() / width,
+            pixels: pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
         }];
         while let Some(last) = levels
             .last()
@@ -44,7 +32,7 @@ impl Mipmaps {
             let half = last.half(&meanings);
             levels.push(half);
         }
-        Some(Mipmaps { levels, meanings })
+        Mipmaps { levels, meanings }
     }
 
     /// The colour at a place, 0 to 1 from the first row down, of texels so many times as wide as they are, as a power of two.

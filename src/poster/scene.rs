@@ -18,10 +18,21 @@ pub struct Scene<'a> {
     pub uvs: Option<&'a [[f32; 2]]>,
     /// One a vertex, with the sign of the bitangent; without them the picture of normals is not used.
     pub tangents: Option<&'a [[f32; 4]]>,
-    /// A PNG file of base colours.
-    pub color: Option<&'a [u8]>,
-    /// A PNG file of normals in tangent space.
-    pub normal: Option<&'a [u8]>,
+    /// Base colours.
+    pub color: Option<Pixels<'a>>,
+    /// Normals in tangent space.
+    pub normal: Option<Pixels<'a>>,
+    /// How open the surface is to the light around, in red.
+    pub occlusion: Option<Pixels<'a>>,
+}
+
+/// A picture on a mesh, the first row at the top.
+#[derive(Debug, Clone, Copy)]
+pub struct Pixels<'a> {
+    /// At least 1.
+    pub width: usize,
+    /// Four bytes a pixel: red, green, blue, alpha, which is not looked at.
+    pub rgba: &'a [u8],
 }
 
 impl Scene<'_> {
@@ -43,6 +54,22 @@ impl Scene<'_> {
                     array: array.into(),
                     expected: format!("{points} (one a point)"),
                     found,
+                });
+            }
+        }
+        let pictures = [
+            ("color", self.color),
+            ("normal", self.normal),
+            ("occlusion", self.occlusion),
+        ];
+        for (name, picture) in pictures {
+            if let Some(Pixels { width, rgba }) = picture
+                && (width == 0 || rgba.is_empty() || !rgba.len().is_multiple_of(4 * width))
+            {
+                return Err(Error::BadLength {
+                    array: name.into(),
+                    expected: format!("rows of {width} pixels, four bytes each"),
+                    found: rgba.len(),
                 });
             }
         }

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::picture::Mipmaps;
-use super::scene::Scene;
+use super::scene::{Pixels, Scene};
 use super::strip::SAMPLES;
 use super::studio::Studio;
 use super::triangles::Placed;
@@ -25,6 +25,7 @@ pub(super) struct Surface<'a> {
     uvs: Option<&'a [[f32; 2]]>,
     color: Option<Mipmaps>,
     relief: Option<Mipmaps>,
+    shade: Option<Mipmaps>,
     matt: Studio,
     glossy: Studio,
 }
@@ -52,9 +53,9 @@ impl<'a> Surface<'a> {
             .iter()
             .map(turned)
             .collect();
-        let picture = |file: Option<&[u8]>, meaning: fn(u8) -> f32| {
-            file.filter(|_| scene.uvs.is_some())
-                .and_then(|file| Mipmaps::of(file, meaning))
+        let picture = |pixels: Option<Pixels>, meaning: fn(u8) -> f32| {
+            let pixels = pixels.filter(|_| scene.uvs.is_some());
+            pixels.map(|pixels| Mipmaps::of(pixels, meaning))
         };
         let relief = scene.normal.filter(|_| !tangents.is_empty());
         Surface {
@@ -69,6 +70,7 @@ impl<'a> Surface<'a> {
                 srgb::linear(f64::from(byte) / 255.0) as f32
             }),
             relief: picture(relief, |byte| f32::from(byte) / 127.5 - 1.0),
+            shade: picture(scene.occlusion, |byte| f32::from(byte) / 255.0),
             tangents,
             matt: Studio::of(1.0),
             glossy: Studio::of(ROUGHNESS),
@@ -89,7 +91,7 @@ impl<'a> Surface<'a> {
             (0..3).fold(DVec3::ZERO, |sum, k| sum + of(corner[k]) * share[k])
         };
         let mut normal = mixed(&|v| self.normals[v]).normalize_or(view) * side;
-        let mut base = [1.0; 3];
+        let (mut base, mut open) = ([1.0; 3], 1.0);
         if let Some(uvs) = self.uvs {
             let at = |share: [f64; 3]| {
                 [0, 1].map(|k| {
@@ -112,6 +114,9 @@ impl<'a> Surface<'a> {
             if let Some(picture) = &self.color {
                 base = picture.at(here, wide(picture));
             }
+            if let Some(picture) = &self.shade {
+                [open, ..] = picture.at(here, wide(picture));
+            }
             if let Some(picture) = &self.relief {
                 let [u, v, w] = picture.at(here, wide(picture));
                 let along = mixed(&|v| self.tangents[v].0).normalize_or(DVec3::X) * side;
@@ -124,11 +129,11 @@ impl<'a> Surface<'a> {
         if self.color.is_none() && !self.colors.is_empty() {
             base = [0, 1, 2].map(|c| (0..3).map(|k| share[k] * self.colors[corner[k]][c]).sum());
         }
-        shown(self.lit(base, normal, view))
+        shown(self.lit(base, open, normal, view))
     }
 
-    /// Linear light towards the camera.
-    fn lit(&self, base: [f64; 3], normal: DVec3, view: DVec3) -> [f64; 3] {
+    /// Linear light towards the camera; `open` is the share of the light around that comes to the place.
+    fn lit(&self, base: [f64; 3], open: f64, normal: DVec3, view: DVec3) -> [f64; 3] {
         let facing = normal.dot(view).clamp(0.0, 1.0);
         let mirrored = normal * (2.0 * normal.dot(view)) - view;
         let rough = ROUGHNESS * ROUGHNESS * ROUGHNESS * ROUGHNESS;
@@ -139,7 +144,13 @@ impl<'a> Surface<'a> {
         let missing = 1.0 - scale - bias;
         let mean = STRAIGHT + (1.0 - STRAIGHT) / 21.0;
         let multiple = single * mean / (1.0 - missing * mean) * missing;
-        base.map(|c| glossy * single + matt * (multiple + c * (1.0 - single - multiple)))
+        // S. Lagarde, C. de Rousiers, "Moving Frostbite to physically based rendering", 2014, section 4.10.2.
+        let sharp = libm::exp2(-16.0 * ROUGHNESS - 1.0);
+        let mirror = (libm::pow(facing + open, sharp) - 1.0 + open).clamp(0.0, 1.0);
+        base.map(|c| {
+            (glossy * single + matt * multiple) * mirror
+                + matt * c * (1.0 - single - multiple) * open
+        })
     }
 }
 

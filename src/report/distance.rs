@@ -95,7 +95,27 @@ impl<'a> TriangleTree<'a> {
         }
     }
 
-    fn distance2(&self, point: Vec3, triangle: u32) -> f64 {
+    /// The triangles within `reach` of `point`, and how far they are; `out` is cleared.
+    pub(crate) fn within(&self, point: Vec3, reach: f64, out: &mut Vec<(f64, u32)>) {
+        out.clear();
+        let enter = |id: usize| {
+            let (low, high) = self.boxes[id];
+            let off = (low - point).max(point - high).max(Vec3::ZERO);
+            f64::from(off.length_squared()) <= reach * reach
+        };
+        self.centroids.visit(
+            |id, _| enter(id),
+            |at| {
+                let triangle = self.centroids.order[at];
+                let distance2 = self.distance2(point, triangle);
+                if distance2 <= reach * reach {
+                    out.push((distance2.sqrt(), triangle));
+                }
+            },
+        );
+    }
+
+    pub(crate) fn distance2(&self, point: Vec3, triangle: u32) -> f64 {
         let [a, b, c] =
             self.triangles[triangle as usize].map(|v| self.vertices[v as usize].as_dvec3());
         let point = point.as_dvec3();

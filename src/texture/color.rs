@@ -1,6 +1,8 @@
-//! Colours of texels from the scan's points.
+//! Colours of texels from the scan's points, or the values that become colours.
 
 use super::fill::Pixel;
+use super::groups::{Gathered, groups};
+use super::maps::Paint;
 use super::texels::{Texels, in_parallel, mix, place};
 use crate::base::error::Result;
 use crate::base::par;
@@ -24,8 +26,8 @@ const PER_TASK: usize = 256;
 /// The scan's points where the full mesh has them.
 pub(super) struct Points<'a> {
     tree: Octree,
-    /// By place in the tree.
-    colors: Vec<[u8; 3]>,
+    /// By place in the tree: a colour, or a value three times.
+    shown: Vec<Pixel>,
     normals: Vec<Vec3>,
     /// Mean distance of neighbours.
     spacing: f64,
@@ -36,7 +38,7 @@ impl<'a> Points<'a> {
     /// `faces` is of the full mesh's triangles.
     pub(super) fn new(
         points: &[Vec3],
-        colors: &[[u8; 3]],
+        paint: &Paint,
         (full, faces): (&'a Mesh, &TriangleTree),
     ) -> Points<'a> {
         let tree = Octree::build(points);
@@ -57,7 +59,11 @@ impl<'a> Points<'a> {
             .map(|&t| full.cross(t).length() / 2.0)
             .sum();
         Points {
-            colors: tree.order.iter().map(|&i| colors[i as usize]).collect(),
+            shown: tree
+                .order
+                .iter()
+                .map(|&i| shown(paint, i as usize))
+                .collect(),
             normals: normals.concat(),
             spacing: (area / points.len().max(1) as f64).sqrt(),
             tree,
@@ -74,32 +80,50 @@ impl<'a> Points<'a> {
         progress: &mut dyn FnMut(f32) -> Result<()>,
     ) -> Result<Vec<Option<Pixel>>> {
         let soft = SOFT * texels.length(mesh).max(self.spacing);
-        let found = in_parallel(spots, progress, Vec::new, |spot, near| {
-            self.at(spot, soft, near)
+        let at = |spot: &Spot| place(self.full, spot).as_vec3();
+        let places: Vec<Vec3> = spots.iter().map(at).collect();
+        let groups = groups(&places, texels.length(mesh));
+        let found = in_parallel(&groups, progress, Gathered::default, |group, gathered| {
+            let mut colors = Vec::with_capacity(group.len());
+            gathered.points(&places[group.clone()], &self.tree, NEAREST, |k, near| {
+                colors.push(self.at(&spots[group.start + k], soft, near));
+            });
+            colors
         })?;
         let mut pixels = vec![None; texels.size[0] * texels.size[1]];
-        for (texel, color) in texels.all.iter().zip(found) {
-            pixels[texel.pixel as usize] = color;
+        for (texel, color) in texels.all.iter().zip(found.iter().flatten()) {
+            pixels[texel.pixel as usize] = *color;
         }
         Ok(pixels)
     }
 
-    fn at(&self, spot: &Spot, soft: f64, near: &mut Vec<Neighbor>) -> Option<Pixel> {
-        let (at, out) = (place(self.full, spot), normal(self.full, spot));
-        self.tree.knn(at.as_vec3(), NEAREST, near);
+    /// The mean of the nearest points.
+    fn at(&self, spot: &Spot, soft: f64, near: &[Neighbor]) -> Option<Pixel> {
+        let out = normal(self.full, spot);
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        for neighbor in near.iter() {
+        for neighbor in near {
             let i = neighbor.index as usize;
             let distance2 = f64::from(neighbor.distance2);
             let agrees = out.dot(self.normals[i].as_dvec3());
-            if agrees <= 0.0 || distance2 > (FAR * self.spacing) * (FAR * self.spacing) {
+            let shown = self.shown[i];
+            let shows = shown[0].is_finite();
+            if !shows || agrees <= 0.0 || distance2 > (FAR * self.spacing) * (FAR * self.spacing) {
                 continue;
             }
             let weight = agrees * agrees / (distance2 + soft * soft);
-            sum += DVec3::from(self.colors[i].map(f64::from)) * weight;
+            sum += DVec3::from(shown.map(f64::from)) * weight;
             weights += weight;
         }
         (weights > 0.0).then(|| (sum / weights).to_array().map(|x| x as f32))
+    }
+}
+
+/// What a point shows; nothing that is finite where it shows nothing.
+fn shown(paint: &Paint, i: usize) -> Pixel {
+    match paint {
+        Paint::Nothing => [f32::NAN; 3],
+        Paint::Colors(colors) => colors[i].map(f32::from),
+        Paint::Scalars { values, .. } => [values[i].clamp(0.0, 1.0); 3],
     }
 }
 

@@ -1,15 +1,17 @@
-//! What a light mesh lost, as pictures on it: colour maps and normal maps.
+//! What a light mesh lost, as pictures on it: maps of colours, normals and occlusion.
 //!
 //! 1. `unwrap`: the light mesh is cut into charts, which lie flat in one picture and nowhere on each other (crate `uvunwrap`);
 //!    vertices on cuts are there once for each chart.
 //! 2. `tangents`: the frame of each vertex that normal maps are told in, by MikkTSpace, as glTF asks.
-//! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh.
-//! 4. `color`: the colour of the scan's points around that place, those of the other side of a wall left out. `relief`: the full mesh's
+//! 3. `texels`: for each texel of a chart its place on the light mesh, and from there the nearest place of the full mesh; `groups` of them
+//!    look together.
+//! 4. `color`: the colour of the scan's points around that place, or of their values, those of the other side of a wall left out. `relief`: the full mesh's
 //!    normal there, in the frame of the light mesh.
+//!    `occlusion`: how open the surface is there to the light around, by `layers`, the lines of many directions through the full mesh.
 //! 5. `fill`: texels that no point is near take the colours around them, and so do those around charts, so that no seam shows.
 //! 6. `picture`: PNG files.
 //!
-//! **In**: a full and a light mesh of one unit frame ([`crate::light`]), and the scan's points with their colours. **Out**: the light mesh
+//! **In**: a full and a light mesh of one unit frame ([`crate::light`]), and the scan's points with their colours or values. **Out**: the light mesh
 //! with texture coordinates, tangents and pictures ([`Textured`]).
 //!
 //! **Cost**: one nearest-triangle query a texel, and one of the nearest points for colours; 4 bytes a texel and map, and 40 bytes
@@ -18,8 +20,13 @@
 //! M. Mikkelsen, "Simulation of wrinkled surfaces revisited", 2008, for the frames; J. Cohen et al., "Appearance-preserving
 //! simplification", 1998, for normals and colours in maps of a simplified mesh.
 
+mod baking;
 mod color;
 mod fill;
+mod groups;
+mod layers;
+mod maps;
+mod occlusion;
 pub(crate) mod picture;
 mod relief;
 mod tangents;
@@ -32,7 +39,9 @@ use crate::cloud::Attribute;
 use crate::light::Painted;
 use crate::mesh::Mesh;
 use crate::report::distance::TriangleTree;
-use glam::Vec3;
+use baking::Baking;
+
+pub use maps::{Map, Paint, Scan, Texture};
 
 /// Sides of pictures, in texels.
 const SIZES: [usize; 2] = [64, 8192];
@@ -41,22 +50,13 @@ const TEXELS_A_POINT: f64 = 4.0;
 /// About the share of a picture that charts cover.
 const COVERED: f64 = 0.6;
 
-/// Which pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Map {
-    /// Of the scan's points; none where they have no colour.
-    Color,
-    /// Of the full mesh, in the light mesh's tangent space: +x along the tangent, +y up in the picture, +z out.
-    Normal,
-}
-
 /// How a mesh is textured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextureParams {
     /// Sides of the pictures in texels, 64 to 8192; they are as high as the charts need. Default: two texels a point of the scan along each
     /// axis, a power of two from 256 to 4096.
     pub size: Option<usize>,
-    /// Default: both.
+    /// Default: colours and normals.
     pub maps: Vec<Map>,
 }
 
@@ -67,19 +67,6 @@ impl Default for TextureParams {
             maps: vec![Map::Color, Map::Normal],
         }
     }
-}
-
-/// A picture.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Texture {
-    /// What it shows.
-    pub map: Map,
-    /// In texels.
-    pub width: usize,
-    /// In texels.
-    pub height: usize,
-    /// A PNG file: 8 bits, three channels.
-    pub png: Vec<u8>,
 }
 
 /// A mesh with texture coordinates, and pictures for it.
@@ -95,19 +82,10 @@ pub struct Textured {
     pub textures: Vec<Texture>,
 }
 
-/// The scan's points in the meshes' frame, and their colours.
-#[derive(Debug, Clone, Copy)]
-pub struct Scan<'a> {
-    /// Positions.
-    pub points: &'a [Vec3],
-    /// One a point, where there are any.
-    pub colors: Option<&'a [[u8; 3]]>,
-}
-
 /// Textures `light` with what `full` and the scan show.
 ///
 /// # Errors
-/// [`Error::BadOption`] (size; more charts than the size has room for), [`Error::Cancelled`].
+/// [`Error::BadOption`] (size; more charts than the size has room for), [`Error::BadLength`], [`Error::Cancelled`].
 pub fn bake(
     full: &Mesh,
     light: &Painted,
@@ -116,42 +94,24 @@ pub fn bake(
     progress: &mut dyn Progress,
 ) -> Result<Textured> {
     let size = size(params, scan.points.len())?;
+    scan.paint.check(scan.points.len())?;
     let mut tell =
         |from: f32, to: f32, part: f32| progress.update(Stage::Texture, from + (to - from) * part);
     let unwrapped = unwrap::unwrap(&light.mesh, size, &mut |part| tell(0.0, 0.2, part))?;
     let painted = split(light, &unwrapped.of, unwrapped.triangles);
     let uvs = unwrapped.uvs;
     let tangents = tangents::tangents(&painted.mesh, &uvs)?;
-    let [width, height] = unwrapped.size;
-    let texels = texels::Texels::new(&painted.mesh, &uvs, [width, height]);
     let faces = TriangleTree::new(&full.vertices, &full.triangles);
-    let spots = texels.spots(&painted.mesh, (full, &faces), &mut |part| {
-        tell(0.2, 0.6, part)
-    })?;
-    let mut textures = Vec::new();
-    for &map in &params.maps {
-        let mut done = |part: f32| tell(0.6, 0.95, part);
-        let pixels = match (map, scan.colors) {
-            (Map::Color, Some(colors)) => {
-                let colored = color::Points::new(scan.points, colors, (full, &faces));
-                colored.bake(&texels, &spots, full, &mut done)?
-            }
-            (Map::Color, None) => continue,
-            (Map::Normal, _) => {
-                relief::bake(&texels, &spots, full, (&painted.mesh, &tangents), &mut done)?
-            }
-        };
-        let filled = fill::fill(pixels, [width, height]);
-        let values = filled.as_flattened().iter();
-        let bytes: Vec<u8> = values.map(|x| x.round() as u8).collect();
-        textures.push(Texture {
-            map,
-            width,
-            height,
-            png: picture::png(&bytes, [width, height], png::ColorType::Rgb)?,
-        });
-    }
-    tell(0.95, 1.0, 1.0)?;
+    let baking = Baking {
+        full,
+        faces: &faces,
+        light: &painted.mesh,
+        uvs: &uvs,
+        tangents: &tangents,
+        scan,
+        size: unwrapped.size,
+    };
+    let textures = baking.all(&params.maps, &mut |part| tell(0.2, 1.0, part))?;
     Ok(Textured {
         painted,
         uvs,

@@ -1,18 +1,22 @@
 //! The texels of the charts, and their places.
 
+use super::groups::{Gathered, groups};
 use crate::base::error::Result;
 use crate::base::par;
 use crate::light::carry::Spot;
 use crate::mesh::Mesh;
 use crate::report::distance::TriangleTree;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
-/// Texels that one index of a parallel map takes.
-const PER_TASK: usize = 256;
+/// Groups of texels, or texels, that one index of a parallel map takes.
+const PER_TASK: usize = 64;
 /// Tasks between two progress calls.
-const TASKS: usize = 64;
+const TASKS: usize = 128;
 /// Texels whose centre is so far outside of a triangle, in texels, are still its own where no other has them.
 const BESIDE: f64 = 0.75;
+
+/// Texels of a square lie behind each other.
+const SQUARE: usize = 4;
 
 /// A texel of a chart.
 pub(super) struct Texel {
@@ -27,7 +31,7 @@ pub(super) struct Texels {
 }
 
 impl Texels {
-    /// Those whose centre lies in a triangle, and those beside one that no triangle has, by rows.
+    /// Those whose centre lies in a triangle, and those beside one that no triangle has, by small squares.
     pub(super) fn new(mesh: &Mesh, uvs: &[[f32; 2]], [width, height]: [usize; 2]) -> Texels {
         // For each pixel the triangle that it lies in, or least outside of, and by how many texels.
         let mut owner = vec![(f64::INFINITY, u32::MAX); width * height];
@@ -71,7 +75,9 @@ impl Texels {
             })
         };
         Texels {
-            all: owner.iter().enumerate().filter_map(texel).collect(),
+            all: tiled(width, height)
+                .filter_map(|at| texel((at, &owner[at])))
+                .collect(),
             size: [width, height],
         }
     }
@@ -93,16 +99,24 @@ impl Texels {
         (full, faces): (&Mesh, &TriangleTree),
         progress: &mut dyn FnMut(f32) -> Result<()>,
     ) -> Result<Vec<Spot>> {
-        in_parallel(
-            &self.all,
-            progress,
-            || 0,
-            |texel: &Texel, hint| {
-                let at = place(mesh, &texel.on).as_vec3();
-                Spot::nearest(at, full, faces, hint)
-            },
-        )
+        let at = |texel: &Texel| place(mesh, &texel.on).as_vec3();
+        let places: Vec<Vec3> = self.all.iter().map(at).collect();
+        let groups = groups(&places, self.length(mesh));
+        let found = in_parallel(&groups, progress, Gathered::default, |group, gathered| {
+            gathered.spots(&places[group.clone()], full, faces)
+        })?;
+        Ok(found.concat())
     }
+}
+
+/// The pixels of a picture, those of each small square behind each other.
+fn tiled(width: usize, height: usize) -> impl Iterator<Item = usize> {
+    let squares = (0..height).step_by(SQUARE);
+    let squares = squares.flat_map(move |y| (0..width).step_by(SQUARE).map(move |x| (x, y)));
+    squares.flat_map(move |(left, top)| {
+        let rows = top..(top + SQUARE).min(height);
+        rows.flat_map(move |y| (left..(left + SQUARE).min(width)).map(move |x| y * width + x))
+    })
 }
 
 /// `f` of each value, in their order, in parallel; `scratch` serves values that follow each other.

@@ -6,6 +6,8 @@ use uvunwrap::{Density, MeshInput, Options, Packing};
 
 /// Texels around each chart that are its own.
 const PADDING: u32 = 2;
+/// Sides of pictures are multiples of this: graphics cards compress so many texels as one (`KHR_texture_basisu`).
+const BLOCK: u32 = 4;
 
 /// A mesh whose vertices on cuts are there once for each chart.
 pub(super) struct Unwrapped {
@@ -48,10 +50,17 @@ pub(super) fn unwrap(
     }
     let made = &atlas.meshes[0];
     let corners = made.indices.chunks_exact(3);
+    let used = [atlas.width, atlas.height];
+    let whole = used.map(|n| n.next_multiple_of(BLOCK));
+    let share = [0, 1].map(|k| used[k] as f32 / whole[k] as f32);
     Ok(Unwrapped {
         of: made.vertices.iter().map(|v| v.xref).collect(),
-        uvs: made.vertices.iter().map(|v| v.uv).collect(),
+        uvs: made
+            .vertices
+            .iter()
+            .map(|v| [0, 1].map(|k| v.uv[k] * share[k]))
+            .collect(),
         triangles: corners.map(|t| [t[0], t[1], t[2]]).collect(),
-        size: [atlas.width as usize, atlas.height as usize],
+        size: whole.map(|n| n as usize),
     })
 }

@@ -23,7 +23,7 @@ function run(...more) {
 
 /** When each file of the site was written. */
 async function times() {
-  const names = (await readdir(site, { recursive: true })).filter((name) => /\.(glb|png|json)$/.test(name) && name !== 'catalogue.json').sort();
+  const names = (await readdir(site, { recursive: true })).filter((name) => /\.(glb|usdz|png|json)$/.test(name) && name !== 'catalogue.json').sort();
   return Object.fromEntries(await Promise.all(names.map(async (name) => [name, (await stat(join(site, name))).mtimeMs])));
 }
 
@@ -48,7 +48,7 @@ test('a catalogue: what failed is told, a second run does nothing, and only what
   assert.deepEqual([report.report.inputPoints, report.model.triangles], [1500, made.triangles]);
 
   const before = await times();
-  assert.equal(Object.keys(before).length, 12);
+  assert.equal(Object.keys(before).length, 16);
   const second = await run('--json');
   assert.equal(second.code, 1);
   assert.match(second.lines.at(-1), /nothing to do, 1 of 5 failed/);
@@ -61,7 +61,7 @@ test('a catalogue: what failed is told, a second run does nothing, and only what
   assert.equal(third.code, 0, third.lines.join('\n'));
   assert.match(third.lines.at(-1), /1 of 4 made, 0 failed/);
   const now = await times();
-  assert.deepEqual(Object.keys(now).filter((name) => now[name] !== before[name]).sort(), ['broken/model.glb', 'broken/poster.png', 'broken/report.json']);
+  assert.deepEqual(Object.keys(now).filter((name) => now[name] !== before[name]).sort(), ['broken/model.glb', 'broken/model.usdz', 'broken/poster.png', 'broken/report.json']);
   assert.ok(!Object.keys(now).some((name) => name.startsWith('b/')));
 });
 

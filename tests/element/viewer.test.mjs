@@ -355,3 +355,33 @@ test('suspended it holds nothing on the GPU, disposed nothing at all', async () 
   assert.deepEqual(await held(), empty);
   await page.waitForFunction(() => (gc(), !window.reference.deref()));
 });
+
+test('a mesh wears pictures: colours, and less light where less comes to it', async () => {
+  const { page, act, picture, faults } = await open();
+  await act(async () => {
+    const plain = async (color) => {
+      const canvas = new OffscreenCanvas(4, 4);
+      const context = canvas.getContext('2d');
+      context.fillStyle = color;
+      context.fillRect(0, 0, 4, 4);
+      return { data: new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer()), type: 'image/png' };
+    };
+    window.pictures = { red: await plain('#c81e1e'), half: await plain('#808080') };
+    window.uvs = new Float32Array(48).fill(0.5);
+  });
+  /** The mean colour once the pictures are there, which come when they are decoded. */
+  const wearing = async (textures, there) => {
+    await act((textures) => viewer.show({ ...box, uvs, textures: Object.fromEntries(Object.entries(textures).map(([map, name]) => [map, pictures[name]])) }), textures);
+    for (let tries = 0; ; tries++) {
+      const seen = await picture();
+      const color = meanColor(seen, silhouette(seen));
+      if (there(color)) return color;
+      assert.ok(tries < 100, `${Object.keys(textures)}: ${color}`);
+      await page.waitForTimeout(50);
+    }
+  };
+  const [red] = await wearing({ color: 'red' }, ([r, g]) => r > 2 * g);
+  const [shaded] = await wearing({ color: 'red', occlusion: 'half' }, ([r, g]) => r > 2 * g && r < 0.85 * red);
+  assert.ok(shaded > 0.4 * red, `${shaded} of ${red}`);
+  assert.deepEqual(faults, []);
+});

@@ -337,10 +337,10 @@ test('every option of the package is a flag, with a word in the help', async (t)
   for (const key of Object.keys(fitting)) assert.match(surface, new RegExp(`\\n  --(no-)?${kebab(key)}\\b`), key);
   const simpler = String((await good(path, ['simplify', '--help'])).stdout);
   for (const key of Object.keys(TABLES.simplify)) assert.match(simpler, new RegExp(`\\n  --${key}\\b`), key);
-  for (const flag of ['texture', 'maps', 'lods']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
+  for (const flag of ['texture', 'maps', 'scalar', 'range', 'lods']) assert.match(surface, new RegExp(`\\n  --${flag}\\b`), flag);
   const drawn = String((await good(path, ['poster', '--help'])).stdout);
   for (const key of Object.keys(TABLES.poster)) assert.match(drawn, new RegExp(`\\n  --${key}\\b`), key);
-  const made = { ...TABLES.simplify, ...TABLES.poster, texture: {}, maps: {}, lods: {} };
+  const made = { ...TABLES.simplify, ...TABLES.poster, texture: {}, maps: {}, scalar: {}, range: {}, lods: {} };
   assert.deepEqual(Object.keys(WORDS).sort(), Object.keys({ ...TARGETS, ...reduction, ...fitting, ...made, ...worded, ...writing, up, unit }).sort());
 
   const line = 'reconstruct a.ply -o b.glb --flatness 0.001 --method paper --max-iterations 7 --norm diagonal --curvature-weight 0 ' +

@@ -20,7 +20,7 @@ const folder = await mkdtemp(join(tmpdir(), 'pointweave-docs-'));
 after(() => rm(folder, { recursive: true }));
 await mkdir(join(folder, 'node_modules'));
 await cp(PACKAGE, join(folder, 'node_modules/pointweave'), { recursive: true });
-for (const peer of ['@gltf-transform', 'meshoptimizer']) {
+for (const peer of ['@gltf-transform', '@jsquash', 'ktx2-encoder', 'meshoptimizer']) {
   await symlink(fileURLToPath(new URL(`../node_modules/${peer}`, import.meta.url)), join(folder, 'node_modules', peer));
 }
 await writeFile(join(folder, 'package.json'), '{ "type": "module" }');

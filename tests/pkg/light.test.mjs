@@ -12,6 +12,7 @@ import { WebIO } from '@gltf-transform/core';
 import { validateBytes } from 'gltf-validator';
 import { createEngine, flip, poster, read, reconstruct, simplify, texture, write } from 'pointweave';
 import { load } from 'pointweave/core';
+import { engineBeside } from './installed.mjs';
 import { sphere } from './support.mjs';
 
 const run = promisify(execFile);
@@ -68,7 +69,7 @@ test('what is wrong is said', async () => {
     [full, {}, 'bad-option'], [full, { triangles: 0 }, 'bad-option'], [full, { error: 0 }, 'bad-option'], [scan, { triangles: 100 }, 'bad-input'],
     [{ ...full, indices: Uint32Array.of(0, 1) }, { triangles: 100 }, 'bad-length'], [{ ...full, indices: Uint32Array.of(0, 1, 9e6) }, { triangles: 100 }, 'bad-index'],
   ]) await assert.rejects(simplify(mesh, options), { code });
-  for (const texture of [{ size: 63 }, { maps: ['metal'] }, 5]) await assert.rejects(reconstruct(scan, { texture }), { code: 'bad-option' });
+  for (const texture of [{ size: 63 }, { maps: ['metal'] }, { scalar: 'weight' }, { scalar: '' }, { range: [0, 1] }, { scalar: 'height', range: [1, 1] }, 5]) await assert.rejects(reconstruct(scan, { texture }), { code: 'bad-option' });
 });
 
 test('a textured mesh is a GLB file that the validator has nothing to say about', async () => {
@@ -141,6 +142,8 @@ test('the command line makes meshes light, and textures them', async (t) => {
     [['simplify', 'mesh.ply', '-o', 'x.glb'], /how light/], [['simplify', 'scan.ply', '-o', 'x.glb', '--triangles', '500'], /no triangles/],
     [['reconstruct', 'scan.ply', '-o', 'x.ply', '--texture', '128'], /GLB and USDZ/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--maps', 'color'], /--texture/],
     [['simplify', 'mesh.ply', '-o', 'x.glb', '--triangles', '0'], /at least 1/],
+    [['reconstruct', 'scan.ply', '-o', 'x.glb', '--scalar', 'height'], /--texture/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--texture', '128', '--range', '0,1'], /--scalar/],
+    [['reconstruct', 'scan.ply', '-o', 'x.usdz', '--texture', '128', '--pictures', 'webp'], /GLB/], [['reconstruct', 'scan.ply', '-o', 'x.glb', '--texture', '64', '--scalar', 'weight'], /'height'/],
   ]) await assert.rejects(pointweave(...args), ({ stderr }) => words.test(stderr), args.join(' '));
 });
 
@@ -192,4 +195,67 @@ test('lods are several meshes of one reconstruction, and several files; a textur
   const counts = await Promise.all(['a.glb', 'a.lod1.glb'].map(async (name) => (await read(await readFile(join(folder, name)), { faces: 'mesh' })).indices.length / 3));
   assert.ok(counts[0] <= 300 && counts[0] >= 294 && counts[1] <= 100 && counts[1] >= 98, `${counts}`);
   await rm(folder, { recursive: true });
+});
+
+test('values are in the place of colours, and a range says which; occlusion is a picture, too', async () => {
+  const maps = ['color', 'occlusion'];
+  const made = await reconstruct(scan, { reduce: false, triangles: 300, texture: { size: 128, maps, scalar: 'height' } });
+  assert.deepEqual(Object.keys(made.textures), maps);
+  const { color, occlusion } = made.textures;
+  assert.deepEqual([occlusion.width, occlusion.height], [color.width / 2, color.height / 2]);
+  const mesh = await reconstruct(scan, { reduce: false });
+  const others = { triangles: 300, size: 128, maps, scalar: 'height' };
+  assert.deepEqual((await texture(mesh, scan, { ...others, range: color.range })).textures, made.textures);
+  assert.notDeepEqual((await texture(mesh, scan, { ...others, range: [-9, 9] })).textures.color.data, color.data);
+  // What an attribute says is shown as it would be of the height.
+  const up = scan.up ?? [0, 1, 0];
+  const height = Float32Array.from({ length: scan.positions.length / 3 }, (_, i) => up.reduce((sum, x, axis) => sum + x * scan.positions[3 * i + axis], 0));
+  const named = await texture(mesh, { ...scan, up, attributes: { values: height } }, { ...others, scalar: 'values' });
+  assert.deepEqual(named.textures.color, (await texture(mesh, { ...scan, up }, others)).textures.color);
+
+  const glb = await write(made, { format: 'glb', up: 'z' });
+  assert.deepEqual((await validateBytes(glb)).issues.messages.filter(({ severity }) => severity < 2), []);
+  const document = await new WebIO().readBinary(glb);
+  assert.deepEqual(document.getRoot().listMaterials()[0].getOcclusionTexture().getImage(), occlusion.data);
+  const back = await read(glb, { faces: 'mesh' });
+  assert.deepEqual(back.uvs, made.uvs);
+  assert.deepEqual(Object.fromEntries(Object.entries(back.textures).map(([map, { width, data }]) => [map, [width, data]])), { color: [color.width, color.data], occlusion: [occlusion.width, occlusion.data] });
+  const options = { size: [160, 120], background: '#203040' };
+  const { data } = await poster(made, options);
+  assert.deepEqual((await poster({ ...back, up: made.up }, options)).data, data);
+  assert.notDeepEqual((await poster({ ...made, textures: { color, occlusion: color } }, options)).data, data);
+});
+
+test('pictures of a GLB are what is asked for, and the packages that are missing are named', async (t) => {
+  const { engine } = await engineBeside(t, ['@gltf-transform', 'meshoptimizer', '@jsquash/webp', 'ktx2-encoder']);
+  const mesh = await engine.reconstruct(scan, { reduce: false, triangles: 300, texture: { size: 256, maps: ['color', 'normal', 'occlusion'] } });
+  const sizes = {};
+  const { log } = console;
+  // The validator knows no KTX2.
+  const UNKNOWN = { png: [], webp: [], ktx2: ['VALUE_NOT_IN_LIST', 'IMAGE_UNRECOGNIZED_FORMAT'] };
+  for (const pictures of ['png', 'webp', 'ktx2']) {
+    for (const meshopt of [false, true]) {
+      const glb = await engine.write(mesh, { format: 'glb', quantize: true, pictures, meshopt });
+      sizes[pictures + meshopt] = glb.length;
+      const { issues, info } = await validateBytes(glb, { ignoredIssues: ['UNSUPPORTED_EXTENSION', ...UNKNOWN[pictures]] });
+      assert.deepEqual(issues.messages.filter(({ severity }) => severity < 2), [], pictures + meshopt);
+      const needed = { png: [], webp: ['EXT_texture_webp'], ktx2: ['KHR_texture_basisu'] }[pictures];
+      assert.deepEqual(needed.filter((name) => !info.extensionsRequired.includes(name)), []);
+      if (meshopt || pictures === 'ktx2') continue;
+      const back = await engine.read(glb, { faces: 'mesh' });
+      assert.deepEqual(Object.values(back.textures).map(({ type }) => type), Array(3).fill(`image/${pictures}`));
+      const [shown, bare] = [back, { ...back, textures: undefined, colors: undefined }].map((what) => engine.poster(what, { size: [64, 48] }));
+      assert.notDeepEqual((await shown).data, (await bare).data, 'a poster has the pictures');
+    }
+  }
+  assert.equal(console.log, log);
+  t.diagnostic(JSON.stringify(sizes));
+  assert.ok(sizes.webpfalse < 0.7 * sizes.pngfalse && sizes.ktx2false < sizes.pngfalse, JSON.stringify(sizes));
+  const own = await engine.write(mesh, { format: 'glb', pictures: async ({ map, width, height, pixels }) => (pixels.length === 4 * width * height ? mesh.textures[map].data : undefined) });
+  assert.deepEqual(own, await engine.write(mesh, { format: 'glb' }));
+  for (const options of [{ format: 'usdz', pictures: 'webp' }, { format: 'glb', pictures: 'gif' }]) await assert.rejects(engine.write(mesh, options), { code: 'bad-option' });
+  const { engine: alone } = await engineBeside(t, []);
+  for (const [pictures, name] of [['webp', '@jsquash/webp'], ['ktx2', 'ktx2-encoder']]) {
+    await assert.rejects(alone.write(mesh, { format: 'glb', pictures }), ({ code, message }) => code === 'missing-package' && message.includes(`npm install ${name}`));
+  }
 });

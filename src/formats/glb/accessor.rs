@@ -14,7 +14,7 @@ pub(super) struct Accessor<'a> {
     components: usize,
     pub(super) count: usize,
     /// Values that replace others.
-    sparse: BTreeMap<usize, [f64; 3]>,
+    sparse: BTreeMap<usize, [f64; 4]>,
 }
 
 impl<'a> Accessor<'a> {
@@ -112,14 +112,20 @@ impl<'a> Accessor<'a> {
 
     /// The first three components of value `i`; those that there are not are 0.
     pub(super) fn triple(&self, i: usize) -> [f64; 3] {
+        let [x, y, z, _] = self.values(i);
+        [x, y, z]
+    }
+
+    /// All four.
+    pub(super) fn values(&self, i: usize) -> [f64; 4] {
         match (self.sparse.get(&i), self.bytes) {
             (Some(value), _) => *value,
             (None, Some(bytes)) => self.components_of(&bytes[i * self.stride..]),
-            (None, None) => [0.0; 3],
+            (None, None) => [0.0; 4],
         }
     }
 
-    fn components_of(&self, bytes: &[u8]) -> [f64; 3] {
+    fn components_of(&self, bytes: &[u8]) -> [f64; 4] {
         let value = |c: usize| {
             if c < self.components {
                 self.component.value(&bytes[c * self.component.size()..])
@@ -127,7 +133,7 @@ impl<'a> Accessor<'a> {
                 0.0
             }
         };
-        [value(0), value(1), value(2)]
+        [0, 1, 2, 3].map(value)
     }
 }
 

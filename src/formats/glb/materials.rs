@@ -58,7 +58,7 @@ pub(super) fn looks(document: &Document, buffer: &[u8], faces: &mut Faces) -> Ve
     placings
 }
 
-fn texture_of(texture: &TextureUse, document: &Document) -> Option<Texture> {
+pub(super) fn texture_of(texture: &TextureUse, document: &Document) -> Option<Texture> {
     let entry = document.textures.get(texture.index)?;
     // A picture of a kind that is not read is one that is missing.
     let of = |other: &Option<TextureSource>| other.as_ref().and_then(|other| other.source);
@@ -97,7 +97,7 @@ fn placing(texture: &TextureUse) -> Placing {
     }
 }
 
-fn image_source(image: &Image, document: &Document, buffer: &[u8]) -> Source {
+pub(super) fn image_source(image: &Image, document: &Document, buffer: &[u8]) -> Source {
     if let Some(view) = image.buffer_view.and_then(|i| document.buffer_views.get(i)) {
         let bytes = Some(view)
             .filter(|view| view.buffer == 0)

@@ -105,6 +105,8 @@ pub(super) struct Material {
     #[serde(default)]
     pub(super) emissive_factor: [f64; 3],
     pub(super) emissive_texture: Option<TextureUse>,
+    pub(super) normal_texture: Option<TextureUse>,
+    pub(super) occlusion_texture: Option<TextureUse>,
     #[serde(default)]
     pub(super) extensions: MaterialExtensions,
 }
@@ -385,6 +387,14 @@ impl Transform {
             .map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3])
     }
 
+    /// A direction along the surface; unit.
+    pub(super) fn direction(&self, d: [f64; 3]) -> [f64; 3] {
+        let turned = self
+            .0
+            .map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
+        unit(turned)
+    }
+
     /// A normal, by the matrix of cofactors; unit.
     pub(super) fn normal(&self, n: [f64; 3]) -> [f64; 3] {
         let m = &self.0;
@@ -408,11 +418,16 @@ impl Transform {
                 .map(|column| cofactor(row, column) * n[column])
                 .sum::<f64>()
         });
-        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-        if length > 0.0 {
-            v.map(|x| x / length)
-        } else {
-            v
-        }
+        unit(v)
+    }
+}
+
+/// A vector without a direction stays as it is.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    if length > 0.0 {
+        v.map(|x| x / length)
+    } else {
+        v
     }
 }

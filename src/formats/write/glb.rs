@@ -10,10 +10,11 @@
 //!   of its own scales them back, so that the origin's stays exact.
 
 use super::local::Local;
+use super::material::Material;
 use super::values::linear;
 use crate::base::error::{Error, Result};
 use crate::cloud::Attribute;
-use crate::formats::raw_cloud::{RawCloud, Skin};
+use crate::formats::raw_cloud::RawCloud;
 use glam::Vec3;
 
 /// Component types of accessors.
@@ -90,7 +91,7 @@ pub(super) fn write(
     );
     let mut material = Material::default();
     if let Some(skin) = skin {
-        material.wear(skin, &mut file);
+        material.wear(skin, &mut |bytes| file.picture(bytes))?;
     }
     let nodes = nodes(local.origin, grid.as_ref());
     Ok(file.finish(&mesh, &nodes, &material, quantize))
@@ -135,52 +136,6 @@ impl Grid {
 
     fn of(&self, x: f32, axis: usize) -> u16 {
         ((f64::from(x) - f64::from(self.start[axis])) / self.step).round() as u16
-    }
-}
-
-/// What the JSON says of pictures.
-#[derive(Default)]
-struct Material {
-    color: String,
-    normal: String,
-    images: Vec<String>,
-}
-
-impl Material {
-    /// Takes the pictures into the file.
-    fn wear(&mut self, skin: &Skin, file: &mut File) {
-        if let Some(png) = &skin.color {
-            let index = self.picture(png, file);
-            self.color = format!("\"baseColorTexture\":{{\"index\":{index}}},");
-        }
-        if let Some(png) = &skin.normal {
-            let index = self.picture(png, file);
-            self.normal = format!("\"normalTexture\":{{\"index\":{index}}},");
-        }
-    }
-
-    fn picture(&mut self, png: &[u8], file: &mut File) -> usize {
-        let view = file.picture(png);
-        self.images.push(format!(
-            "{{\"bufferView\":{view},\"mimeType\":\"image/png\"}}"
-        ));
-        self.images.len() - 1
-    }
-
-    /// The lists of images and textures; nothing without any.
-    fn pictures(&self) -> String {
-        if self.images.is_empty() {
-            return String::new();
-        }
-        let textures = 0..self.images.len();
-        let textures: Vec<String> = textures
-            .map(|i| format!("{{\"source\":{i},\"sampler\":0}}"))
-            .collect();
-        format!(
-            "\"images\":[{}],\"textures\":[{}],\"samplers\":[{{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":33071,\"wrapT\":33071}}],",
-            self.images.join(","),
-            textures.join(",")
-        )
     }
 }
 
@@ -238,11 +193,11 @@ impl File {
     }
 
     /// The bytes of a picture's file; gives the view's index.
-    fn picture(&mut self, png: &[u8]) -> usize {
+    fn picture(&mut self, file: &[u8]) -> usize {
         let start = self.bytes.len();
-        self.bytes.extend_from_slice(png);
+        self.bytes.extend_from_slice(file);
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let length = png.len();
+        let length = file.len();
         self.views.push(format!(
             "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{length}}}"
         ));
@@ -323,20 +278,23 @@ impl File {
 
     /// Header, JSON, binary part.
     fn finish(self, mesh: &str, nodes: &str, material: &Material, quantized: bool) -> Vec<u8> {
-        let extensions = if quantized {
-            let list = "[\"KHR_mesh_quantization\"]";
-            format!("\"extensionsUsed\":{list},\"extensionsRequired\":{list},")
-        } else {
-            String::new()
+        let mut needed = material.extensions.clone();
+        needed.extend(quantized.then_some("KHR_mesh_quantization"));
+        let list: Vec<String> = needed.iter().map(|name| format!("\"{name}\"")).collect();
+        let list = list.join(",");
+        let extensions = match needed.is_empty() {
+            true => String::new(),
+            false => format!("\"extensionsUsed\":[{list}],\"extensionsRequired\":[{list}],"),
         };
         let mut json = format!(
             "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"Pointweave {}\"}},{extensions}\"scene\":0,\
              \"scenes\":[{{\"nodes\":[0]}}],\"nodes\":[{nodes}],{mesh},\
-             \"materials\":[{{\"pbrMetallicRoughness\":{{{}\"metallicFactor\":0,\"roughnessFactor\":0.9}},{}\"doubleSided\":true}}],{}\
+             \"materials\":[{{\"pbrMetallicRoughness\":{{{}\"metallicFactor\":0,\"roughnessFactor\":0.9}},{}{}\"doubleSided\":true}}],{}\
              \"accessors\":[{}],\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
             env!("CARGO_PKG_VERSION"),
             material.color,
             material.normal,
+            material.occlusion,
             material.pictures(),
             self.accessors.join(","),
             self.views.join(","),

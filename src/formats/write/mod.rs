@@ -4,12 +4,14 @@ mod glb;
 #[cfg(feature = "exports")]
 mod las;
 mod local;
+mod material;
 mod names;
 mod obj;
 #[cfg(feature = "exports")]
 mod obj_zip;
 #[cfg(feature = "exports")]
 mod pcd;
+mod pictures;
 mod ply;
 mod stand;
 mod stl;

@@ -4,6 +4,7 @@
 
 use super::glb::{bounds, check_finite, unit_normals};
 use super::local::Local;
+use super::pictures::expect_png;
 use super::values::linear;
 use super::zip::{Packing, archive};
 use crate::base::error::{Error, Result};
@@ -36,6 +37,9 @@ struct Picture<'a> {
     /// The shader's input that it goes to.
     input: &'static str,
     shader: &'static str,
+    /// Which of its channels, and of what type they are.
+    output: &'static str,
+    kind: &'static str,
     meaning: &'static str,
 }
 
@@ -46,6 +50,8 @@ impl Picture<'_> {
             png,
             input: "color3f inputs:diffuseColor",
             shader: "ColorPicture",
+            output: "rgb",
+            kind: "float3",
             meaning: "token inputs:sourceColorSpace = \"sRGB\"",
         });
         let normal = skin.normal.as_ref().map(|png| Picture {
@@ -53,22 +59,40 @@ impl Picture<'_> {
             png,
             input: "normal3f inputs:normal",
             shader: "NormalPicture",
+            output: "rgb",
+            kind: "float3",
             // Bytes stand for -1 to 1.
             meaning: "token inputs:sourceColorSpace = \"raw\"\n            float4 inputs:scale = (2, 2, 2, 1)\n            \
                       float4 inputs:bias = (-1, -1, -1, 0)",
         });
-        color.into_iter().chain(normal).collect()
+        let occlusion = skin.occlusion.as_ref().map(|png| Picture {
+            file: "occlusion.png",
+            png,
+            input: "float inputs:occlusion",
+            shader: "OcclusionPicture",
+            output: "r",
+            kind: "float",
+            meaning: "token inputs:sourceColorSpace = \"raw\"",
+        });
+        color.into_iter().chain(normal).chain(occlusion).collect()
     }
 
     fn connection(&self) -> String {
-        let Picture { input, shader, .. } = self;
-        format!("            {input}.connect = </Scan/Material/{shader}.outputs:rgb>\n")
+        let Picture {
+            input,
+            shader,
+            output,
+            ..
+        } = self;
+        format!("            {input}.connect = </Scan/Material/{shader}.outputs:{output}>\n")
     }
 
     fn texture(&self) -> String {
         let Picture {
             file,
             shader,
+            output,
+            kind,
             meaning,
             ..
         } = self;
@@ -81,7 +105,7 @@ impl Picture<'_> {
             token inputs:wrapS = "clamp"
             token inputs:wrapT = "clamp"
             {meaning}
-            float3 outputs:rgb
+            {kind} outputs:{output}
         }}
 "#
         )
@@ -91,7 +115,7 @@ impl Picture<'_> {
 /// Writes points and, with `triangles`, a mesh.
 ///
 /// # Errors
-/// [`Error::EmptyCloud`]; [`Error::NonFinite`].
+/// [`Error::EmptyCloud`]; [`Error::NonFinite`]; [`Error::BadOption`] for pictures that are no PNG files.
 pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>) -> Result<Vec<u8>> {
     if cloud.points() == 0 {
         return Err(Error::EmptyCloud);
@@ -137,8 +161,10 @@ pub(super) fn write(cloud: &RawCloud, triangles: Option<&[u32]>) -> Result<Vec<u
     }
     let skin = cloud.skin().filter(|_| triangles.is_some());
     let pictures = skin.map(Picture::all).unwrap_or_default();
-    if let Some(Skin { uvs, .. }) = skin {
+    if let Some(skin) = skin {
+        let Skin { uvs, .. } = skin;
         check_finite("uvs", uvs, 2)?;
+        expect_png(skin)?;
         // From the bottom up, as USD has it.
         let places = uvs.chunks_exact(2);
         let places = places.map(|uv| format!("({}, {})", uv[0], 1.0 - uv[1]));
