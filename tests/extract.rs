@@ -460,6 +460,7 @@ fn noise_is_manifold() {
                 let params = ExtractParams {
                     resolution: h,
                     boundary,
+                    ground: GROUND,
                     max_hole: MaxHole::Auto,
                     sharp,
                     most,

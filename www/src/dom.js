@@ -22,6 +22,11 @@ export function element(tag, properties = {}) {
   return Object.assign(document.createElement(tag), properties);
 }
 
+/** A radio button, by its group and value. @param {string} name @param {string} value */
+export function radio(name, value) {
+  return /** @type {HTMLInputElement} */ (document.querySelector(`input[name="${name}"][value="${value}"]`));
+}
+
 /** Tells a screen reader, without moving the focus. */
 export function announce(/** @type {string} */ text) {
   byId('live', HTMLElement).textContent = text;

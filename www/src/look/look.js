@@ -1,5 +1,5 @@
 import { PAINTS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
-import { announce, byId, element } from '../dom.js';
+import { announce, byId, element, radio } from '../dom.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { Legend } from './legend.js';
@@ -226,6 +226,11 @@ export class Look {
     if (this.#viewer) this.#viewer.insets = { bottom: height };
   }
 
+  /** The box of what is shown. */
+  get frame() {
+    return this.#scan?.frame ?? null;
+  }
+
   /** Where things are in the picture; null where there is none. @returns {import('pointweave/viewer').Viewer | null} */
   get aim() {
     return this.#viewer;
@@ -442,8 +447,4 @@ function paintChoice(/** @type {string} */ name, /** @type {string} */ words) {
 
 function valueOf(/** @type {Event} */ event) {
   return /** @type {HTMLInputElement} */ (event.target).value;
-}
-
-function radio(/** @type {'view' | 'paint'} */ name, /** @type {string} */ value) {
-  return /** @type {HTMLInputElement} */ (document.querySelector(`input[name="${name}"][value="${value}"]`));
 }
