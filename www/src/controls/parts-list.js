@@ -87,8 +87,8 @@ function fate({ scans = [], pairs = [] }, scan) {
   if (!one.placed) return say('left out: {reason}', { reason: reasonWords(one.reason) });
   const own = pairs.filter((pair) => pair.scans.includes(scan));
   const share = format.percent(Math.max(0, ...own.map(({ overlap }) => overlap)));
-  return own.some(({ trusted }) => trusted) ? say('fits: {share} of it lies on another', { share })
-    : say('placed by way of others: {share} of it lies on another', { share });
+  return own.some(({ trusted }) => trusted) ? say('fits, {share} overlap', { share })
+    : say('placed by way of others, {share} overlap', { share });
 }
 
 /** @param {string} reason as the package says it */

@@ -102,8 +102,7 @@ export class Session extends Emitter {
    */
   openParts(files, parts, key) {
     const shown = parts.flatMap(({ of, off }) => (off ? [] : [files[of]]));
-    const title = shown.length > 1 ? say('{count} scans', { count: shown.length }) : shown[0].name;
-    return this.#open({ title, file: stem(shown[0].name), key, parts }, (signal) => {
+    return this.#open({ title: shown[0].name, file: stem(shown[0].name), key, parts }, (signal) => {
       /** @type {(file: File, watch: any) => Promise<Opened>} */
       const readOne = (file, watch) => readAny(file, { name: file.name, beside: files.filter((other) => other !== file), ...watch });
       return this.#reading.all(shown, readOne, (file) => this.emit('unread', file), { signal, onProgress: this.#report(signal) });
@@ -287,7 +286,8 @@ export class Session extends Emitter {
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = this.whole = { ...source, cloud, clouds, count, frame, own: { up: cloud.up, unit: cloud.unit } };
+      const title = clouds && clouds.length > 1 ? say('{count} scans', { count: clouds.length }) : source.title;
+      this.scan = this.whole = { ...source, title, cloud, clouds, count, frame, own: { up: cloud.up, unit: cloud.unit } };
       this.recipe = [];
       this.#prepared = null;
       this.outcome = this.#unturned = null;

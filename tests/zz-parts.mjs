@@ -1,0 +1,18 @@
+import { open, ready, drawn, browser, server } from './zz-look.mjs';
+const files = ['bun000','bun045','bun090','bun180','bun270','bun315','chin'].map((n) => `/work/shared/data/scans/bunny_raw/${n}.ply`);
+const page = await open({}, '#count=4000');
+await ready(page);
+const debug = await page.context().newCDPSession(page);
+for (const type of ['dragEnter', 'dragOver', 'drop']) await debug.send('Input.dispatchDragEvent', { type, x: 300, y: 300, data: { items: [], files, dragOperationsMask: 1 } });
+await page.waitForFunction(() => /7 scans/.test(document.querySelector('#caption-title').textContent), null, { timeout: 200000 });
+await ready(page); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/parts-lying.png' });
+const t = Date.now();
+await page.click('#parts-register'); await page.waitForSelector('#app[data-state="working"]'); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/parts-working.png' });
+await ready(page); await drawn(page);
+console.log('registered and meshed in', Date.now() - t);
+await page.screenshot({ path: '/tmp/desk-shots/parts-registered.png' });
+await page.setViewportSize({ width: 360, height: 740 }); await page.locator('#parts').scrollIntoViewIfNeeded(); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/parts-phone.png' });
+await browser.close(); server.close();

@@ -1,0 +1,14 @@
+import { open, ready, drawn, browser, server } from './zz-look.mjs';
+const page = await open();
+await ready(page);
+await page.keyboard.press('x'); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/section.png' });
+await page.click('#section-along label:has([value=x])'); await page.keyboard.press('1'); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/section-points.png' });
+await page.keyboard.press('3'); await page.keyboard.press('m'); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/section-measure.png' });
+await page.keyboard.press('m'); await page.setViewportSize({ width: 360, height: 740 }); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/section-phone.png' });
+await page.setViewportSize({ width: 740, height: 360 }); await drawn(page);
+await page.screenshot({ path: '/tmp/desk-shots/section-land.png' });
+await browser.close(); server.close();
