@@ -4,7 +4,7 @@
 //!    origin, diagonal 1); [`Frame`] takes them back.
 //! 2. [`octree::Octree`] puts the points in Morton order ([`morton`]) and cuts them into cells: the paper's sub-domains
 //!    (section 3) and the index of all neighbour queries ([`queries`]).
-//! 3. [`neighborhood`] asks for the neighbours of a whole cell of points at once.
+//! 3. [`neighborhood`] asks for the neighbours of a whole cell of points at once, `near` for those that a query gives to each.
 //!
 //! **In**: `x y z …` in the caller's frame and unit, `f32` or `f64`; per-point colours, normals, scalars; where and how it was
 //! seen. **Out**: the same in the unit frame, in the caller's order; the tree has its own order and says which point is which.
@@ -15,6 +15,7 @@ pub(crate) mod copies;
 mod crs;
 mod floor;
 pub mod morton;
+pub(crate) mod near;
 pub mod neighborhood;
 pub mod octree;
 pub mod queries;
