@@ -71,7 +71,7 @@ export class App {
   #message = new MessageCard(this.#choose);
   #opening = new Opening(this.#session, this.#message, (parts) => this.#show(parts), () => this.#recut([{ step: 'register' }, ...(this.#shown.value.edits.recipe ?? [])]));
   #progress = new ProgressBar(() => this.#session.cancel());
-  #saving = new Saving(this.#session, this.#look, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
+  #saving = new Saving(this.#session, this.#look, (error, name) => this.#message.showError(error, name), (how) => this.#closeHoles(how));
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
   #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, say('comparison')));
 
@@ -382,8 +382,8 @@ export class App {
     this.#settingsChanged();
   }
 
-  #closeHoles() {
-    this.#session.settings.set('boundary', 'closed');
+  #closeHoles(/** @type {'closed' | 'base'} */ how) {
+    this.#session.settings.set('boundary', how);
     this.#settingsChanged();
   }
 

@@ -66,14 +66,14 @@ export class Saving {
    * @param {Session} session
    * @param {import('../look/look.js').Look} look
    * @param {(error: unknown, name: string) => void} fail
-   * @param {() => void} close  has all holes closed
+   * @param {(how: 'closed' | 'base') => void} close  has all holes closed, or the mesh ended in a flat base where its floor was
    */
   constructor(session, look, fail, close) {
     this.#session = session;
     this.#web = new WebSaving(session, look, fail);
     this.#fail = fail;
     this.#button.addEventListener('click', () => this.#first && this.#save(...this.#first));
-    this.#close.addEventListener('click', close);
+    this.#close.addEventListener('click', () => close(this.#closing));
     this.#menu.addEventListener('toggle', () => this.#menu.open && this.#listAll());
   }
 
@@ -120,7 +120,13 @@ export class Saving {
     const { ready, words } = printingWords(solid, mesh.unit);
     this.#prints = ready;
     this.#printing.textContent = words;
-    this.#close.hidden = solid.closed || this.#session.settings.get('boundary') === 'closed';
+    this.#close.textContent = this.#closing === 'base' ? say('Close it with a flat base') : say('Close all holes');
+    this.#close.hidden = solid.closed || this.#session.settings.get('boundary') === this.#closing;
+  }
+
+  /** What helps a mesh that is open: what stood on a floor stands flat. @returns {'closed' | 'base'} */
+  get #closing() {
+    return this.#outcome?.scan.cloud.floor ? 'base' : 'closed';
   }
 
   /** A row for each format that the package writes; sizes appear as the files are made. */

@@ -183,6 +183,7 @@ export class Session extends Emitter {
 
   /** The floor of a scan, by at most so many of its points; undefined where there is none. @param {Scan} scan @param {number} most @param {AbortSignal} signal */
   async floor({ cloud: { positions, up }, count }, most, signal) {
+    await nextTask();
     const step = Math.ceil(count / most);
     const some = positions.slice(0, 3 * Math.ceil(count / step));
     for (let i = 0; i < some.length; i++) some[i] = positions[3 * step * Math.floor(i / 3) + (i % 3)];
@@ -292,6 +293,9 @@ export class Session extends Emitter {
       this.#prepared = null;
       this.outcome = this.#unturned = null;
       this.emit('opened', this.scan);
+      // The picture of it is a task, and its way to the engine another.
+      await nextTask();
+      if (job.signal.aborted) return;
     } catch (error) {
       this.#end(job, 'failed', { error, ...source });
       // The scan that was open stays; the job that this file interrupted goes on, one that was cancelled does not.

@@ -20,6 +20,7 @@ export default {
   'too little of it lies on another scan to be sure of its place': 'zu wenig davon liegt auf einem anderen Scan, um seinen Ort sicher zu kennen',
   'nothing of it looks like a part of another scan': 'nichts davon sieht wie ein Teil eines anderen Scans aus',
   'Scans registered': 'Scans ausgerichtet',
+  'Close it with a flat base': 'Mit flachem Boden schließen',
   'Section plane': 'Schnittebene',
   'A plane through it; what is before the plane is not drawn (X)': 'Eine Ebene hindurch; was davor liegt, wird nicht gezeichnet (X)',
   'Across': 'Quer zu',

@@ -20,6 +20,7 @@ export default {
   'too little of it lies on another scan to be sure of its place': 'trop peu repose sur un autre scan pour être sûr de sa place',
   'nothing of it looks like a part of another scan': 'rien n’y ressemble à une partie d’un autre scan',
   'Scans registered': 'Scans recalés',
+  'Close it with a flat base': 'Fermer par une base plate',
   'Section plane': 'Plan de coupe',
   'A plane through it; what is before the plane is not drawn (X)': 'Un plan au travers ; ce qui est devant n’est pas dessiné (X)',
   'Across': 'En travers de',
