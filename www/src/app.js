@@ -1,7 +1,8 @@
 import { addressOf, readAddress } from './session/address.js';
 import { Comparison } from './controls/comparison.js';
 import { Controls } from './controls/controls.js';
-import { announce, byId } from './dom.js';
+import { announce } from './dom.js';
+import { page } from './page.js';
 import { acceptFiles } from './session/files.js';
 import * as format from './results/format.js';
 import { helpDialog } from './help.js';
@@ -45,7 +46,7 @@ const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y':
 
 /** Puts the session, the picture and the controls together. */
 export class App {
-  #root = byId('app', HTMLElement);
+  #root = page.app;
   #session = new Session();
   #shown = new Shown(addressOf);
   #steps = new Steps(this.#shown);
@@ -66,7 +67,7 @@ export class App {
     this.#look.choosePiece(chosen);
   });
   #sharing = new Sharing();
-  #run = byId('run', HTMLButtonElement);
+  #run = page.run;
   #choose = acceptFiles((files) => this.#opening.open(files));
   #message = new MessageCard(this.#choose);
   #opening = new Opening(this.#session, this.#message, (parts) => this.#show(parts), () => this.#recut([{ step: 'register' }, ...(this.#shown.value.edits.recipe ?? [])]));
@@ -147,10 +148,10 @@ export class App {
   }
 
   #listenToControls() {
-    byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
-    byId('skip', HTMLAnchorElement).addEventListener('click', (event) => {
+    page.choose.addEventListener('click', this.#choose);
+    page.skip.addEventListener('click', (event) => {
       event.preventDefault(); // another # would be another address
-      byId('panel', HTMLElement).focus();
+      page.panel.focus();
     });
     this.#run.addEventListener('click', () => this.#session.run());
     for (const button of this.#samples()) {
@@ -169,7 +170,7 @@ export class App {
       { key: 'Escape', shown: 'Esc', does: say('Close a message or menu, cancel the work'), act: () => this.#escape() },
     ];
     const showHelp = helpDialog(describeKeys(keys));
-    byId('help-open', HTMLButtonElement).addEventListener('click', showHelp);
+    page.helpOpen.addEventListener('click', showHelp);
     listenToKeys(keys);
   }
 
@@ -195,7 +196,7 @@ export class App {
   #opened(/** @type {Scan} */ scan) {
     for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === scan.model);
     document.title = `${scan.title} · Pointweave`;
-    byId('caption-title', HTMLElement).textContent = scan.title;
+    page.captionTitle.textContent = scan.title;
     this.#look.opened(scan);
     const known = same(fromOf(scan), this.#shown.value.scan);
     const edits = known ? this.#shown.value.edits : this.#wanted(scan);
@@ -221,7 +222,7 @@ export class App {
 
   /** Nothing was made of this scan yet. */
   #reset(/** @type {Scan} */ scan) {
-    byId('caption-detail', HTMLElement).textContent = contentsOf(scan, this.#session.whole?.count);
+    page.captionDetail.textContent = contentsOf(scan, this.#session.whole?.count);
     this.#showSize(scan);
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
@@ -324,7 +325,7 @@ export class App {
   }
 
   #showSize(/** @type {Scan} */ { frame, cloud: { unit } }) {
-    byId('caption-size', HTMLElement).textContent = `${frame.size.map((edge) => format.length(this.#session.scale * edge)).join(' × ')} ${unit ?? ''}`.trim();
+    page.captionSize.textContent = `${frame.size.map((edge) => format.length(this.#session.scale * edge)).join(' × ')} ${unit ?? ''}`.trim();
   }
 
   get #flipped() {

@@ -1,6 +1,6 @@
 import { DroppedList } from './dropped-list.js';
 import { PartsList } from './parts-list.js';
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { ColumnChooser } from '../session/column-chooser.js';
 import { sortOut } from '../session/dropped.js';
 import { areParts } from '../session/parts.js';
@@ -33,7 +33,7 @@ export class Opening {
     this.#message = message;
     this.#list = new PartsList(chosen, register);
     session.on('unread', (file) => this.#list.failed(file));
-    byId('forget', HTMLButtonElement).addEventListener('click', async () => {
+    page.forget.addEventListener('click', async () => {
       await forget();
       await this.#sayKept();
     });
@@ -104,7 +104,7 @@ export class Opening {
 
   /** Says whether the browser keeps scans of the person's. */
   async #sayKept() {
-    byId('kept', HTMLElement).hidden = !(await keepsSome());
+    page.kept.hidden = !(await keepsSome());
   }
 }
 

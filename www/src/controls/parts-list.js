@@ -1,4 +1,5 @@
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -12,10 +13,10 @@ const BIN = '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M4 6h12M8 6V4h
 
 /** The scans that are shown as one: each can be hidden and taken away, and they can be registered. */
 export class PartsList {
-  #box = byId('parts', HTMLElement);
-  #rows = byId('parts-rows', HTMLUListElement);
-  #words = byId('parts-words', HTMLElement);
-  #register = byId('parts-register', HTMLButtonElement);
+  #box = page.parts;
+  #rows = page.partsRows;
+  #words = page.partsWords;
+  #register = page.partsRegister;
   #changed;
   /** @type {File[]} */
   #files = [];

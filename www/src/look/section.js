@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -14,12 +14,12 @@ const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 export class Section {
   #look;
   #began;
-  #root = byId('app', HTMLElement);
-  #bar = byId('section-bar', HTMLElement);
-  #button = byId('section', HTMLButtonElement);
-  #along = byId('section-along', HTMLFieldSetElement);
-  #place = byId('section-place', HTMLInputElement);
-  #words = byId('section-words', HTMLElement);
+  #root = page.app;
+  #bar = page.sectionBar;
+  #button = page.section;
+  #along = page.sectionAlong;
+  #place = page.sectionPlace;
+  #words = page.sectionWords;
   #flipped = false;
   /** Of the line of sight when it was chosen. @type {Triple} */
   #sight = AXES.z;
@@ -31,11 +31,11 @@ export class Section {
     this.#button.addEventListener('click', () => this.toggle());
     this.#place.addEventListener('input', () => this.#show());
     this.#along.addEventListener('change', () => this.#turn());
-    byId('section-flip', HTMLButtonElement).addEventListener('click', () => {
+    page.sectionFlip.addEventListener('click', () => {
       this.#flipped = !this.#flipped;
       this.#show();
     });
-    byId('section-close', HTMLButtonElement).addEventListener('click', () => this.stop());
+    page.sectionClose.addEventListener('click', () => this.stop());
   }
 
   get open() {
@@ -46,7 +46,7 @@ export class Section {
     if (this.open) return this.stop();
     if (!this.#look.aim?.dimensions) return;
     this.#began();
-    byId('camera-menu', HTMLDetailsElement).open = false;
+    page.cameraMenu.open = false;
     this.#root.dataset.section = '';
     this.#button.ariaPressed = 'true';
     this.#bar.hidden = false;
@@ -54,12 +54,12 @@ export class Section {
     this.#turn();
     this.#look.leave(this.#bar.offsetHeight + MARGIN);
     this.#place.focus({ preventScroll: true });
-    byId('stage', HTMLElement).scrollIntoView({ block: 'nearest' });
+    page.stage.scrollIntoView({ block: 'nearest' });
   }
 
   stop() {
     if (!this.open) return;
-    if (this.#bar.contains(document.activeElement)) byId('canvas', HTMLCanvasElement).focus({ preventScroll: true });
+    if (this.#bar.contains(document.activeElement)) page.canvas.focus({ preventScroll: true });
     delete this.#root.dataset.section;
     this.#button.ariaPressed = 'false';
     this.#bar.hidden = true;

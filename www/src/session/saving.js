@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import { scaled } from '../measure/lengths.js';
 import { compressAside } from './compressing.js';
 import { WebSaving } from './web-saving.js';
@@ -44,14 +45,14 @@ export const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };
 export class Saving {
   #session;
   #fail;
-  #button = byId('save', HTMLButtonElement);
-  #what = byId('save-what', HTMLElement);
-  #detail = byId('save-detail', HTMLElement);
-  #menu = byId('formats', HTMLDetailsElement);
-  #list = byId('format-list', HTMLElement);
-  #note = byId('save-note', HTMLElement);
-  #printing = byId('printing', HTMLElement);
-  #close = byId('close-holes', HTMLButtonElement);
+  #button = page.save;
+  #what = page.saveWhat;
+  #detail = page.saveDetail;
+  #menu = page.formats;
+  #list = page.formatList;
+  #note = page.saveNote;
+  #printing = page.printing;
+  #close = page.closeHoles;
   /** The mesh can be printed. */
   #prints = false;
   #web;

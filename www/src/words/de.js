@@ -1,5 +1,6 @@
 import tidy from './de-tidy.js';
 import doubts from './de-doubts.js';
+import reasons from './de-reasons.js';
 import scans from './de-scans.js';
 import streaming from './de-streaming.js';
 import web from './de-web.js';
@@ -9,6 +10,7 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...reasons,
   ...scans,
   ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',

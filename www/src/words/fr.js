@@ -1,5 +1,6 @@
 import tidy from './fr-tidy.js';
 import doubts from './fr-doubts.js';
+import reasons from './fr-reasons.js';
 import scans from './fr-scans.js';
 import streaming from './fr-streaming.js';
 import web from './fr-web.js';
@@ -9,6 +10,7 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...reasons,
   ...scans,
   ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave : un scan 3D devient un modèle léger et correct',
