@@ -8,6 +8,7 @@ export const page = {
   get captionDetail() { return byId('caption-detail', HTMLElement); },
   get captionSize() { return byId('caption-size', HTMLElement); },
   get captionTitle() { return byId('caption-title', HTMLElement); },
+  get chart() { return byId('chart', SVGElement); },
   get chartNote() { return byId('chart-note', HTMLElement); },
   get choose() { return byId('choose', HTMLButtonElement); },
   get closeHoles() { return byId('close-holes', HTMLButtonElement); },
@@ -173,7 +174,7 @@ export const page = {
 
 /**
  * The element with this id, of the class that the caller relies on.
- * @template {HTMLElement} T
+ * @template {Element} T
  * @param {string} id
  * @param {new () => T} kind
  * @returns {T}

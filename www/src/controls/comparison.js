@@ -20,7 +20,7 @@ export class Comparison {
   #choose;
   #fail;
   #box = page.comparison;
-  #chart = /** @type {SVGElement} */ (/** @type {unknown} */ (document.getElementById('chart')));
+  #chart = page.chart;
   #note = page.chartNote;
   /** @type {Dot[]} */
   #dots = [];
