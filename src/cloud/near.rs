@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn all_within_a_radius_are_found() {
         let tree = Octree::build(&points());
-        let radius = |i: usize| if i % 50 == 0 { 0.4 } else { 0.03 };
+        let radius = |i: usize| if i.is_multiple_of(50) { 0.4 } else { 0.03 };
         let told = (Stage::Features, &mut Silent as &mut dyn Progress);
         let mut all = Vec::new();
         let copy = |_, found: &[Neighbor]| found.to_vec();
