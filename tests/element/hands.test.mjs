@@ -229,6 +229,7 @@ test('axe finds nothing, in any state, light and dark', async () => {
   for (const colorScheme of ['light', 'dark']) {
     const shown = await site.open(body, {
       colorScheme, reducedMotion: 'no-preference', style: ':root { color-scheme: light dark } body { background: Canvas } point-weave { width: 480px }',
+      viewport: { width: 1280, height: 2200 }, // all at once: what is far away waits
       prepare: (page) => page.route('**/slow.glb', () => {}), // never answered
     });
     await shown.loaded('#scan, #plain, #decoration');

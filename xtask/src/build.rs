@@ -274,9 +274,10 @@ impl Builder {
     /// The module as wasm-bindgen leaves it, or nothing if the finished one is already made of what the compiler wrote.
     fn compile(&self, build: Build) -> Result<Option<PathBuf>> {
         run(
+            // The library for other crates, which the manifest names too, would cost as much again.
             build
-                .cargo(&self.toolchain, "build")
-                .args(["--quiet", "--lib"]),
+                .cargo(&self.toolchain, "rustc")
+                .args(["--quiet", "--lib", "--crate-type", "cdylib"]),
             "the wasm build failed; its errors are above",
         )?;
         let wasm = build
