@@ -275,9 +275,12 @@ impl Builder {
     fn compile(&self, build: Build) -> Result<Option<PathBuf>> {
         run(
             // The library for other crates, which the manifest names too, would cost as much again.
-            build
-                .cargo(&self.toolchain, "rustc")
-                .args(["--quiet", "--lib", "--crate-type", "cdylib"]),
+            build.cargo(&self.toolchain, "rustc").args([
+                "--quiet",
+                "--lib",
+                "--crate-type",
+                "cdylib",
+            ]),
             "the wasm build failed; its errors are above",
         )?;
         let wasm = build
