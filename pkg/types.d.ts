@@ -31,6 +31,11 @@ export interface PointCloud<Positions extends Float32Array | Float64Array = Floa
   up?: [number, number, number];
   /** All was seen from high above, along `up` (z without it), as airborne scans are; carried to every reduced cloud. */
   seenFromAbove?: boolean;
+  /**
+   * What the object stood on: a point of a plane, and its normal, of any length but 0, to the side that the object is on. A step `plane`
+   * that drops the floor leaves it, for `boundary: 'base'`; carried to every reduced cloud.
+   */
+  floor?: { point: [number, number, number]; normal: [number, number, number] };
   /** What a coordinate is; carried to every result. */
   unit?: Unit;
   /** The reference system of world coordinates, as a LAS file describes it; carried to every result, and written to LAS and LAZ. */

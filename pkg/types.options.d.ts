@@ -180,9 +180,12 @@ export interface ReconstructOptions {
    * What happens where there were no points.
    * - `'auto'` (default): Holes up to `maxHole` are closed, open sheets stay open.
    * - `'closed'`: As `'open'`, and every rim is capped by a membrane, which is flat where the rim is.
+   * - `'base'`: As `'closed'`, and where the surface stands on the floor it goes straight down to it and ends in a flat
+   *   base, for a 3D print. The floor is the cloud's `floor`, which a step `plane` of `prepare` leaves; without it the
+   *   lowest place, across `'up'` (z without).
    * - `'open'`: The surface ends where the points end.
    */
-  boundary?: 'auto' | 'closed' | 'open';
+  boundary?: 'auto' | 'closed' | 'base' | 'open';
   /**
    * Widest hole that is closed. With `boundary: 'auto'`, the widest hole that is closed. The report's `holes` lists them.
    * - `'auto'` (default): A tenth of the diagonal; a fifth where the surface goes on smoothly across the hole.

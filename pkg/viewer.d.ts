@@ -64,6 +64,13 @@ export interface Split {
   at: number;
 }
 
+/** A plane that cuts what is drawn, in the coordinates of the data. */
+export interface Section {
+  point: [number, number, number];
+  /** Of any length but 0, into the side that is drawn. */
+  normal: [number, number, number];
+}
+
 /** Any CSS colours, for what has no colours of its own; `reduced` is for the layer of that name. */
 export interface LayerColors {
   points: string;
@@ -294,6 +301,11 @@ export interface Viewer extends EventTarget {
    * normal, where there is one, towards it. What stands before it is not looked for.
    */
   project(position: [number, number, number], normal?: [number, number, number]): { x: number; y: number; visible: boolean };
+  /**
+   * Draws only what is on the side of a plane that its normal points into, of every layer; `pick` and `pickPoint` find nothing else. It stays
+   * where it is in the data when something else is shown. Default null: all. Throws `bad-input`.
+   */
+  section: Section | null;
   /** Parallel projection instead of perspective. Default false. */
   parallel: boolean;
   /** Points are drawn this many times as large as they are of themselves. Default 1. */

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use pointweave::base::params::{Boundary, MaxHole};
 use pointweave::base::progress::Silent;
 use pointweave::base::rng::Rng;
-use pointweave::mesh::{ExtractParams, Extracted, Implicit, extract};
+use pointweave::mesh::{ExtractParams, Extracted, Ground, Implicit, extract};
 use pointweave::report::{Topology, area, topology, volume};
 use pointweave::{Error, Stage};
 use std::collections::HashSet;
@@ -109,9 +109,14 @@ fn sample(value: &impl Fn(DVec3) -> f64, n: usize) -> Vec<Vec3> {
     points.map(|x| x.as_vec3()).collect()
 }
 
+const GROUND: Ground = Ground {
+    normal: DVec3::Z,
+    height: None,
+};
 const SMOOTH: ExtractParams = ExtractParams {
     resolution: 0.01,
     boundary: Boundary::Auto,
+    ground: GROUND,
     max_hole: MaxHole::Auto,
     sharp: false,
     most: None,
@@ -455,6 +460,7 @@ fn noise_is_manifold() {
                 let params = ExtractParams {
                     resolution: h,
                     boundary,
+                    ground: GROUND,
                     max_hole: MaxHole::Auto,
                     sharp,
                     most,

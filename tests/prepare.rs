@@ -6,14 +6,16 @@ mod staged;
 mod views;
 
 use glam::DVec3;
+use pointweave::base::params::{Boundary, SurfaceParams};
 use pointweave::base::progress::Silent;
+use pointweave::mesh::topology::volume;
 use pointweave::pipeline::{Prepared, prepare, prepare_scans};
 use pointweave::prepare::planes::Drop;
 use pointweave::prepare::recipe::Step;
 use pointweave::prepare::regions::Region;
 use pointweave::prepare::register::{Placed, register};
 use pointweave::samples::{Model, sample};
-use pointweave::{Cloud, Error, Stage as Part};
+use pointweave::{Cloud, Error, Stage as Part, reconstruct};
 use staged::{Body, Scan, Stage, Staged, largest, plane, tidy};
 use views::{View, Views, errors};
 
@@ -126,6 +128,66 @@ fn a_floor_is_the_plane_that_things_stand_on_and_an_objects_face_is_none() {
     assert_eq!(kept.kept.len(), clean.len());
     assert!(kept.steps[0].reason.contains("no plane"));
     assert!(!kept.steps[0].planes.as_ref().unwrap().is_empty());
+}
+
+#[test]
+fn an_object_whose_floor_was_dropped_gets_a_flat_base_there() {
+    let mut params = SurfaceParams::default();
+    for model in [Model::Duck, Model::Pig, Model::Part] {
+        let scan = Staged {
+            model,
+            stage: Stage::Table,
+            second: None,
+            strays: true,
+            points: 25_000,
+            noise: 5e-4,
+            seed: 2,
+        }
+        .scan();
+        let cloud = cloud_of(&scan);
+        let prepared = prepare(&cloud, &tidy(), &mut Silent).unwrap();
+        let floor = prepared.floor.unwrap();
+        let noise = 5e-4 * scan.diagonal;
+        assert!(floor.normal.y > 0.9999 && (floor.point[1] - scan.ground).abs() < noise);
+        let object = cloud.select(&prepared.kept).unwrap().with_floor(floor);
+        params.boundary = Boundary::Base;
+        let based = reconstruct(&object, &params, &mut Silent).unwrap();
+        let found = &based.report;
+        let positions = based.positions_f64();
+        let over = |y: f64| (y - floor.point[1]) / scan.diagonal;
+        let heights = positions.chunks(3).map(|p| over(p[1]));
+        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+        let on_it = heights.filter(|h| h.abs() < 1e-4).count();
+        let name = format!("{}: {lowest} {on_it} {found:?}", model.name());
+        assert_eq!((found.boundary_edges, found.non_manifold_edges), (0, 0));
+        assert!(
+            found.components == 1 && lowest.abs() < 1e-4 && on_it > 200,
+            "{name}"
+        );
+        params.boundary = Boundary::Closed;
+        let closed = reconstruct(&object, &params, &mut Silent).unwrap();
+        let [base, membrane] = [&based, &closed].map(|s| {
+            let inside = volume(&s.mesh.vertices, &s.mesh.triangles);
+            inside * object.frame.diagonal.powi(3) / truth(model) - 1.0
+        });
+        assert!(
+            base.abs() < 0.08 && base.abs() < membrane.abs(),
+            "{base} {membrane}"
+        );
+    }
+}
+
+/// Volume of a model, by a grid.
+fn truth(model: Model) -> f64 {
+    let (low, high) = model.bounds();
+    let n = 80;
+    let step = (high - low) / f64::from(n);
+    let middle = |i: i32| f64::from(i) + 0.5;
+    let inside = (0..n * n * n).filter(|i| {
+        let at = DVec3::new(middle(i % n), middle(i / n % n), middle(i / n / n));
+        model.distance(low + at * step) < 0.0
+    });
+    inside.count() as f64 * step.x * step.y * step.z
 }
 
 #[test]

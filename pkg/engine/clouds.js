@@ -76,7 +76,7 @@ function fields(object, name) {
 }
 
 /** @param {Record<string, any>} cloud @returns {PointCloud} */
-function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove, unit, crs, faces }) {
+function cloudFields({ positions, colors, normals, attributes = {}, origin, viewpoints, up, seenFromAbove, floor, unit, crs, faces }) {
   expectArray('positions', positions, Float32Array, Float64Array);
   if (colors !== undefined) expectArray('colors', colors, Uint8Array);
   if (normals !== undefined) expectArray('normals', normals, Float32Array);
@@ -84,11 +84,13 @@ function cloudFields({ positions, colors, normals, attributes = {}, origin, view
   for (const [name, triple] of Object.entries({ origin, up })) if (triple !== undefined) expectTriple(name, triple);
   if (viewpoints !== undefined) expectViewpoints(viewpoints);
   if (seenFromAbove !== undefined && typeof seenFromAbove !== 'boolean') throw badInput('seenFromAbove', 'true or false', seenFromAbove);
+  if (floor !== undefined) for (const name of ['point', 'normal']) expectTriple(`floor.${name}`, fields(floor, 'floor')[name]);
   if (unit !== undefined && !UNITS.includes(unit)) throw badInput('unit', `one of ${UNITS.join(', ')}`, unit);
   if (crs !== undefined) expectCrs(crs);
   if (faces !== undefined && !Number.isSafeInteger(faces)) throw badInput('faces', 'an integer', faces);
   return {
     positions, colors, normals, attributes: { ...attributes }, origin: origin && [...origin], up: up && [...up], seenFromAbove, unit, faces,
+    floor: floor && { point: [...floor.point], normal: [...floor.normal] },
     viewpoints: viewpoints && { positions: viewpoints.positions, of: viewpoints.of },
     crs: crs && { wkt: crs.wkt, keys: crs.keys, doubles: crs.doubles, ascii: crs.ascii },
   };

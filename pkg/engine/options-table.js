@@ -40,7 +40,7 @@ export const RECONSTRUCT = {
   triangles: integer(1, 0xffffffff),
   sharp: toggle(true),
   fairing: toggle(true),
-  boundary: choice('auto', 'closed', 'open'),
+  boundary: choice('auto', 'closed', 'base', 'open'),
   maxHole: number(0, 1, { or: 'auto', fallback: 'auto' }),
   scatter: choice('drop', 'keep'),
   distances: toggle(false),

@@ -52,12 +52,12 @@ export function lookedAt(clouds) {
 
 /**
  * @param {PointCloud[]} clouds
- * @param {{ kept: Uint32Array, labels: Uint8Array, steps: any[] }} found
+ * @param {{ kept: Uint32Array, labels: Uint8Array, steps: any[], floor?: PointCloud['floor'] }} found
  * @returns {Prepared<any>}
  */
-export function preparedOf(clouds, { kept, labels, steps }) {
+export function preparedOf(clouds, { kept, labels, steps, floor }) {
   const cloud = clouds.length > 1 ? together(clouds, steps[0].scans) : clouds[0];
-  return { cloud: select(cloud, kept), kept, labels, steps };
+  return { cloud: { ...select(cloud, kept), ...(floor && { floor }) }, kept, labels, steps };
 }
 
 /**

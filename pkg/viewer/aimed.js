@@ -2,8 +2,9 @@
 import { Matrix4, Vector3 } from 'three';
 import { Moved } from './moved.js';
 import { pointAt, triangleAt } from './pick.js';
+import { planeOf } from './section.js';
 
-/** @import { Mover } from '../viewer.js' */
+/** @import { Mover, Section } from '../viewer.js' */
 /** @import { Stage } from './stage.js' */
 
 /** A point is meant by who comes this near, in CSS pixels. */
@@ -15,6 +16,8 @@ export class Aimed extends Moved {
   ratio = 1;
   /** @type {import('./painter.js').Side[]} */
   sides = [];
+  /** What is before it is not drawn. @type {Section | null} */
+  cut = null;
   #stage;
 
   /**
@@ -28,12 +31,17 @@ export class Aimed extends Moved {
     this.#stage = stage;
   }
 
+  /** Planes before the camera, in front of which nothing is drawn. */
+  get planes() {
+    return this.cut ? [planeOf(this.cut, this.frameNow, this.#stage.root.quaternion)] : [];
+  }
+
   /** @param {number} x @param {number} y */
   pick(x, y) {
     const { side, layer } = this.#under(x);
     if (!side || !layer) return null;
     const { width, height, ratio } = this;
-    const found = triangleAt(layer, this.camera, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
+    const found = triangleAt(layer, this.camera, this.planes, (2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height);
     if (!found) return null;
     const { triangle, normal, point } = found;
     const direction = normal.applyQuaternion(this.#stage.root.quaternion.clone().invert());
@@ -45,7 +53,7 @@ export class Aimed extends Moved {
     const { side, layer } = this.#under(x);
     if (!side || !layer) return null;
     const { width, height, ratio } = this;
-    const found = pointAt(layer, this.camera, { x: x * ratio, y: y * ratio, width, height, reach: reach * ratio });
+    const found = pointAt(layer, this.camera, this.planes, { x: x * ratio, y: y * ratio, width, height, reach: reach * ratio });
     return found && { layer: side.layer, index: found.index, position: this.unplaced(found.point) };
   }
 

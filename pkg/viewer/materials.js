@@ -64,6 +64,7 @@ export function boxMaterial() {
  */
 export function pointMaterial({ colored, linear = false, normals, diameter }) {
   return new ShaderMaterial({
+    clipping: true,
     defines: {
       ...(colored && { COLORED: '' }),
       ...(linear && { LINEAR: '' }),
@@ -84,14 +85,16 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
       uniform float diameter, scale, pixelsPerUnit, smallest, distance, measured;
       varying vec3 shown;
       varying float near;
+      #include <clipping_planes_pars_vertex>
       #ifdef COLORED
         attribute vec3 color;
       #endif
       void main() {
-        vec4 eye = modelViewMatrix * vec4(position, 1.0);
-        gl_Position = projectionMatrix * eye;
+        vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * mvPosition;
+        #include <clipping_planes_vertex>
         bool parallel = projectionMatrix[3][3] == 1.0;
-        gl_PointSize = scale * clamp(diameter * pixelsPerUnit / (parallel ? distance : -eye.z), smallest, 96.0);
+        gl_PointSize = scale * clamp(diameter * pixelsPerUnit / (parallel ? distance : -mvPosition.z), smallest, 96.0);
         #ifdef COLORED
           shown = color;
           #ifdef LINEAR
@@ -103,7 +106,7 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
         near = 1.0;
         #ifdef SHADED
           vec3 n = normalize(normalMatrix * normal);
-          float facing = dot(n, parallel ? vec3(0.0, 0.0, 1.0) : normalize(-eye.xyz));
+          float facing = dot(n, parallel ? vec3(0.0, 0.0, 1.0) : normalize(-mvPosition.xyz));
           #ifdef ORIENTED
             near = smoothstep(-0.15, 0.1, facing);
           #else
@@ -117,7 +120,9 @@ export function pointMaterial({ colored, linear = false, normals, diameter }) {
     fragmentShader: /* glsl */ `
       varying vec3 shown;
       varying float near;
+      #include <clipping_planes_pars_fragment>
       void main() {
+        #include <clipping_planes_fragment>
         vec2 offset = gl_PointCoord - 0.5;
         if (dot(offset, offset) > 0.25) discard;
         gl_FragColor = vec4(shown, 0.5 + 0.5 * near);

@@ -19,6 +19,7 @@ import { Lights } from './light.js';
  * @property {CanvasRenderingContext2D} context where it goes
  * @property {boolean} lit whether anything in it has a material that is lit
  * @property {object | 'neutral'} surroundings what lights it: a texture, or the studio
+ * @property {import('three').Plane[]} planes what is behind one of them is not drawn
  * @property {number} exposure of materials that are lit; 1 as it is
  * @property {(renderer: WebGLRenderer) => void} readied what has to be drawn elsewhere before: its shadow
  * @property {(layer: string) => number} prepare readies scene and camera for a layer; how strong its depth pass is, 0 for none
@@ -108,6 +109,7 @@ class Painter {
     picture.readied(this.#renderer);
     this.#renderer.setViewport(0, 0, width, height);
     this.#renderer.setScissorTest(true);
+    this.#renderer.clippingPlanes = picture.planes;
     for (const { layer, from, to } of picture.sides) {
       this.#renderer.setScissor(from, 0, to - from, height);
       const dome = picture.prepare(layer);
@@ -118,6 +120,7 @@ class Painter {
         this.#renderer.render(scene, camera);
       }
     }
+    this.#renderer.clippingPlanes = [];
     context.globalCompositeOperation = 'copy';
     context.drawImage(this.#canvas, 0, this.#canvas.height - height, width, height, 0, 0, width, height);
   }

@@ -1,7 +1,7 @@
 /** Which triangle, or which point, lies under a place of the picture, and how the surface around it stands. */
 import { Matrix3, Matrix4, Raycaster, Vector3 } from 'three';
 
-/** @import { BufferGeometry, Mesh, PerspectiveCamera } from 'three' */
+/** @import { BufferGeometry, Mesh, PerspectiveCamera, Plane } from 'three' */
 /** @import { Layer } from './stage.js' */
 
 /** The plane of a triangle is that of what lies around it within this share of the mesh's size … */
@@ -21,15 +21,16 @@ const ray = new Raycaster();
  * around it that looks at the camera, both as it stands before the camera. `null` where there is none.
  * @param {Layer} layer
  * @param {PerspectiveCamera} camera which may have the projection of another kind
+ * @param {Plane[]} planes what is behind one of them is not there
  * @param {number} x from -1 at the left of the picture to 1
  * @param {number} y from -1 at the bottom to 1
  */
-export function triangleAt({ bit, objects }, camera, x, y) {
+export function triangleAt({ bit, objects }, camera, planes, x, y) {
   const from = new Vector3(x, y, -1).unproject(camera);
   ray.set(from, new Vector3(x, y, 1).unproject(camera).sub(from).normalize());
   ray.layers.set(bit);
   const meshes = /** @type {Mesh[]} */ (objects.filter(({ type }) => type !== 'Points'));
-  const [hit] = ray.intersectObjects(meshes, false);
+  const hit = ray.intersectObjects(meshes, false).find(({ point }) => planes.every((plane) => plane.distanceToPoint(point) >= 0));
   if (!hit) return null;
   const at = meshes.findIndex((mesh) => mesh === hit.object);
   const before = meshes.slice(0, at).reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
@@ -44,9 +45,10 @@ export function triangleAt({ bit, objects }, camera, x, y) {
  * to the place. `null` where there is none.
  * @param {Layer} layer
  * @param {PerspectiveCamera} camera
+ * @param {Plane[]} planes what is behind one of them is not there
  * @param {{ x: number, y: number, width: number, height: number, reach: number }} place in device pixels from the top left
  */
-export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
+export function pointAt({ objects }, camera, planes, { x, y, width, height, reach }) {
   let found = null;
   let least = Infinity;
   let before = 0;
@@ -72,8 +74,10 @@ export function pointAt({ objects }, camera, { x, y, width, height, reach }) {
       // The frame's diagonal is 1: a place that is off by the whole reach is worth so much depth.
       const cost = WORTH * off - (ex * px + ey * py + ez * pz + ew);
       if (cost >= least) continue;
+      const point = new Vector3(px, py, pz).applyMatrix4(matrixWorld);
+      if (planes.some((plane) => plane.distanceToPoint(point) < 0)) continue;
       least = cost;
-      found = { index: before + i, point: new Vector3(px, py, pz).applyMatrix4(matrixWorld) };
+      found = { index: before + i, point };
     }
     before += positions.count;
   }

@@ -8,6 +8,7 @@ import { MOVES, listenToKeys } from './keyboard.js';
 import { NEUTRAL } from './light.js';
 import { NEAREST } from './look.js';
 import { sharedPainter } from './painter.js';
+import { sectionOf } from './section.js';
 import { Size } from './size.js';
 import { ALWAYS, Stage } from './stage.js';
 import { Streaming } from './streaming.js';
@@ -15,7 +16,7 @@ import { likelyUp, nearestAxis } from './upright.js';
 import { inSight } from './watching.js';
 
 /**
- * @import { Axis, Drawable, Frame, Insets, LayerColors, Model, Mover, Paint, Placed, Split, Viewer, ViewerOptions } from '../viewer.js'
+ * @import { Axis, Drawable, Frame, Insets, LayerColors, Model, Mover, Paint, Placed, Section, Split, Viewer, ViewerOptions } from '../viewer.js'
  * @import { Parts } from './glb.js'
  */
 
@@ -246,6 +247,16 @@ class CanvasViewer extends Streaming {
 
   set pointSize(scale) {
     this.#pointSize = scale;
+    this.ask();
+  }
+
+  get section() {
+    return sectionOf(this.cut);
+  }
+
+  /** @param {Section | null} section */
+  set section(section) {
+    this.cut = sectionOf(section);
     this.ask();
   }
 

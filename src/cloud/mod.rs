@@ -4,7 +4,7 @@
 //!    origin, diagonal 1); [`Frame`] takes them back.
 //! 2. [`octree::Octree`] puts the points in Morton order ([`morton`]) and cuts them into cells: the paper's sub-domains
 //!    (section 3) and the index of all neighbour queries ([`queries`]).
-//! 3. [`neighborhood`] asks for the neighbours of a whole cell of points at once.
+//! 3. [`neighborhood`] asks for the neighbours of a whole cell of points at once, `near` for those that a query gives to each.
 //!
 //! **In**: `x y z …` in the caller's frame and unit, `f32` or `f64`; per-point colours, normals, scalars; where and how it was
 //! seen. **Out**: the same in the unit frame, in the caller's order; the tree has its own order and says which point is which.
@@ -13,7 +13,9 @@
 
 pub(crate) mod copies;
 mod crs;
+mod floor;
 pub mod morton;
+pub(crate) mod near;
 pub mod neighborhood;
 pub mod octree;
 pub mod queries;
@@ -25,6 +27,7 @@ use glam::Vec3;
 use std::ops::Range;
 
 pub use crs::Crs;
+pub use floor::Floor;
 pub use unit::Unit;
 pub use viewpoints::Viewpoints;
 
@@ -151,6 +154,8 @@ pub struct Cloud {
     pub up: Option<Vec3>,
     /// Whether all was seen from high above, along `up` (z where there is none): airborne scans.
     pub seen_from_above: bool,
+    /// What carried the object, where that is known.
+    pub floor: Option<Floor>,
     /// What a coordinate of the caller's frame is.
     pub unit: Option<Unit>,
     /// The reference system of world coordinates; carried along.
@@ -208,6 +213,7 @@ impl Cloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            floor: None,
             unit: None,
             crs: None,
             faces: 0,
@@ -304,6 +310,12 @@ impl Cloud {
         self
     }
 
+    /// Says what carried the object: the base of a mesh (`boundary: 'base'`) is there.
+    pub fn with_floor(mut self, floor: Floor) -> Cloud {
+        self.floor = Some(floor);
+        self
+    }
+
     /// Says what a coordinate of the caller's frame is.
     pub fn with_unit(mut self, unit: Unit) -> Cloud {
         self.unit = Some(unit);
@@ -338,6 +350,7 @@ impl Cloud {
             viewpoints: self.viewpoints.as_ref().map(|v| v.select(each())),
             up: self.up,
             seen_from_above: self.seen_from_above,
+            floor: self.floor,
             unit: self.unit,
             crs: self.crs.clone(),
             faces: self.faces,

@@ -27,6 +27,7 @@ use crate::base::linalg::{outer, sym_eigen};
 use crate::base::par;
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::copies::copies;
+use crate::cloud::near::each_nearest;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 
@@ -112,44 +113,32 @@ fn isolated_distinct(
     (noise, usual): (f32, f32),
     progress: &mut dyn Progress,
 ) -> Result<Vec<bool>> {
-    let n = tree.points.len();
     let mut part = Part::new(progress, 0.0..0.3);
-    let reach = par::map_progress(
-        n,
-        1.0,
-        (Stage::Features, &mut part),
-        Vec::new,
-        |i, found: &mut Vec<Neighbor>| {
-            tree.knn(tree.points[i], CLUMP, found);
-            REACH * found[found.len() - 1].distance2.sqrt()
-        },
-    )?;
-    let friends = |i: usize, found: &mut Vec<Neighbor>| {
-        tree.knn(tree.points[i], NEAREST + 1, found);
-        found.retain(|f| {
-            let j = f.index as usize;
-            j != i && f.distance2.sqrt() <= reach[i].min(reach[j]) + THICK.1 * noise
-        });
+    let told = (Stage::Features, &mut part as &mut dyn Progress);
+    let reach = each_nearest(tree, CLUMP, None, told, |_, found| {
+        REACH * found[found.len() - 1].distance2.sqrt()
+    })?;
+    let are_friends = |i: usize, f: &Neighbor| {
+        let j = f.index as usize;
+        j != i && f.distance2.sqrt() <= reach[i].min(reach[j]) + THICK.1 * noise
     };
     let mut part = Part::new(part.progress, 0.3..1.0);
-    let lie = par::map_progress(
-        n,
-        4.0,
-        (Stage::Features, &mut part),
-        Vec::new,
-        |i, found: &mut Vec<Neighbor>| {
-            friends(i, found);
-            lie(tree, i, found, reach[i], noise)
-        },
-    )?;
+    let told = (Stage::Features, &mut part as &mut dyn Progress);
+    let within = |i: usize| reach[i] + THICK.1 * noise;
+    let lie = each_nearest(tree, NEAREST + 1, Some(&within), told, |i, found| {
+        found.retain(|f| are_friends(i, f));
+        lie(tree, i, found, reach[i], noise)
+    })?;
     let settled = settled(tree, &lie, (&reach, usual));
-    Ok(par::map(n, Vec::new, |i, found: &mut Vec<Neighbor>| {
+    let each = |i: usize, found: &mut Vec<Neighbor>| {
         if settled[i] {
             return false;
         }
-        friends(i, found);
-        found.iter().filter(|f| settled[f.index as usize]).count() < SETTLED
-    }))
+        tree.knn(tree.points[i], NEAREST + 1, found);
+        let friends = found.iter().filter(|f| are_friends(i, f));
+        friends.filter(|f| settled[f.index as usize]).count() < SETTLED
+    };
+    Ok(par::map(tree.points.len(), Vec::new, each))
 }
 
 /// How these friends of point `i`, nearest first, lie together with it.

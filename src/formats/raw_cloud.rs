@@ -2,7 +2,7 @@
 
 use super::faces::sampling::Sampling;
 use crate::base::error::{Error, Result};
-use crate::cloud::{Attribute, Cloud, Crs, Unit, Viewpoints};
+use crate::cloud::{Attribute, Cloud, Crs, Floor, Unit, Viewpoints};
 #[cfg(feature = "stages")]
 use crate::pipeline::Surface;
 
@@ -71,6 +71,8 @@ pub struct RawCloud {
     pub up: Option<[f64; 3]>,
     /// Whether all was seen from above, as airborne scans are.
     pub seen_from_above: bool,
+    /// What carried the object: a point and a normal.
+    pub floor: Option<[[f64; 3]; 2]>,
     /// What a coordinate is.
     pub unit: Option<Unit>,
     /// The reference system of world coordinates.
@@ -107,6 +109,7 @@ impl RawCloud {
             viewpoints: None,
             up: None,
             seen_from_above: false,
+            floor: None,
             unit: None,
             crs: None,
             dropped: 0,
@@ -134,6 +137,9 @@ impl RawCloud {
             viewpoints: cloud.viewpoints.clone(),
             up: cloud.up.map(|up| up.as_dvec3().to_array()),
             seen_from_above: cloud.seen_from_above,
+            floor: cloud
+                .floor
+                .map(|floor| [floor.point, floor.normal.as_dvec3().to_array()]),
             unit: cloud.unit,
             crs: cloud.crs.clone(),
             ..RawCloud::new(Positions::F64(cloud.positions_f64()))
@@ -192,6 +198,9 @@ impl RawCloud {
         }
         if let Some(up) = self.up {
             cloud = cloud.with_up(up)?;
+        }
+        if let Some([point, normal]) = self.floor {
+            cloud = cloud.with_floor(Floor::new(point, normal)?);
         }
         cloud.origin = self.origin;
         cloud.unit = self.unit;

@@ -1,10 +1,11 @@
 //! Clouds and meshes of the caller's.
 
 use crate::base::error::Error;
-use crate::cloud::{Attribute, Cloud, Unit};
+use crate::cloud::{Attribute, Cloud, Floor, Unit};
 use crate::formats::{Positions, RawCloud};
 use crate::js::crs::PointCrs;
 use crate::js::viewpoints::PointViews;
+use crate::js::{JsResult, object};
 use js_sys::{Array, Float32Array, Float64Array, Object, Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -28,6 +29,9 @@ extern "C" {
     fn up(this: &PointCloud) -> Option<Array>;
     #[wasm_bindgen(method, getter, js_name = seenFromAbove)]
     fn seen_from_above(this: &PointCloud) -> Option<bool>;
+    /// A point and a normal.
+    #[wasm_bindgen(method, getter)]
+    fn floor(this: &PointCloud) -> Option<PointFloor>;
     #[wasm_bindgen(method, getter)]
     fn unit(this: &PointCloud) -> Option<String>;
     #[wasm_bindgen(method, getter)]
@@ -75,6 +79,16 @@ extern "C" {
     pub fn pixels(this: &Decoded) -> Uint8Array;
 }
 
+#[wasm_bindgen]
+extern "C" {
+    /// `{ point, normal }`.
+    pub type PointFloor;
+    #[wasm_bindgen(method, getter)]
+    fn point(this: &PointFloor) -> Array;
+    #[wasm_bindgen(method, getter)]
+    fn normal(this: &PointFloor) -> Array;
+}
+
 impl PointCloud {
     /// What a writer takes.
     pub(crate) fn read(&self) -> Result<RawCloud, Error> {
@@ -97,6 +111,7 @@ impl PointCloud {
             viewpoints: viewpoints.transpose()?,
             up: self.up().map(triple),
             seen_from_above: self.seen_from_above().unwrap_or_default(),
+            floor: (self.floor()).map(|floor| [triple(floor.point()), triple(floor.normal())]),
             unit: self.unit().and_then(|name| Unit::from_name(&name)),
             crs: self.crs().map(|crs| crs.read()),
             ..RawCloud::new(positions)
@@ -126,6 +141,19 @@ pub(crate) enum Precision {
 /// Three numbers.
 pub(crate) fn triple(values: Array) -> [f64; 3] {
     [0, 1, 2].map(|axis| values.get(axis).as_f64().unwrap_or(0.0))
+}
+
+/// `{ point, normal }`; undefined where there is none.
+pub(crate) fn floor_to_js(floor: &Option<Floor>) -> JsResult {
+    let Some(Floor { point, normal }) = floor else {
+        return Ok(JsValue::UNDEFINED);
+    };
+    let array = |triple: [f64; 3]| triple.into_iter().map(JsValue::from).collect::<Array>();
+    let normal = normal.as_dvec3().to_array();
+    object([
+        ("point", array(*point).into()),
+        ("normal", array(normal).into()),
+    ])
 }
 
 /// An entry `[name, values]`.

@@ -8,7 +8,7 @@ use crate::base::error::Error;
 use crate::base::params::{ReduceParams, SurfaceParams};
 use crate::cloud::{Attribute, Cloud};
 use crate::formats::Positions;
-use crate::js::clouds::{PointCloud, Precision};
+use crate::js::clouds::{PointCloud, Precision, floor_to_js};
 use crate::js::crs::crs_to_js;
 use crate::js::progress::JsProgress;
 use crate::js::values::{JsOption, to_js};
@@ -112,6 +112,7 @@ fn reduced_to_js(result: &ReducedCloud, precision: Precision) -> JsResult {
             }),
         ),
         ("viewpoints", views_to_js(&cloud.viewpoints)?),
+        ("floor", floor_to_js(&cloud.floor)?),
         (
             "seenFromAbove",
             optional(&cloud.seen_from_above.then_some(true), |yes| *yes),

@@ -2,7 +2,7 @@
 
 use crate::base::error::Error;
 use crate::cloud::Cloud;
-use crate::js::clouds::PointCloud;
+use crate::js::clouds::{PointCloud, floor_to_js};
 use crate::js::progress::JsProgress;
 use crate::js::values::{JsOption, to_js};
 use crate::js::{JsResult, object, optional};
@@ -11,7 +11,7 @@ use crate::prepare::recipe::Step;
 use js_sys::{Array, Function, Reflect, Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// [`pipeline::prepare_scans`] of an array of clouds and an array of steps: `{ kept, labels, steps }`.
+/// [`pipeline::prepare_scans`] of an array of clouds and an array of steps: `{ kept, labels, steps, floor }`.
 #[wasm_bindgen]
 pub fn prepare(clouds: Array, steps: JsValue, progress: Function) -> JsResult {
     let recipe = Step::recipe(&JsOption(steps))?;
@@ -32,5 +32,6 @@ pub fn prepare(clouds: Array, steps: JsValue, progress: Function) -> JsResult {
         ("kept", Uint32Array::from(&prepared.kept[..]).into()),
         ("labels", Uint8Array::from(&prepared.dropped_by[..]).into()),
         ("steps", steps.into()),
+        ("floor", floor_to_js(&prepared.floor)?),
     ])
 }

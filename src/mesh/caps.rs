@@ -8,7 +8,6 @@
 use crate::base::sort_keys::{pack, unpack};
 use crate::mesh::disc::Disc;
 use crate::mesh::surface::Mesh;
-use crate::mesh::topology::area;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -53,7 +52,7 @@ fn edges(mesh: &Mesh) -> impl Iterator<Item = u64> {
 }
 
 /// Twice the area that a rim encloses, across it: along the normal of what would close it.
-fn across(at: impl Fn(u32) -> DVec3, rim: &[u32]) -> DVec3 {
+pub(crate) fn across(at: impl Fn(u32) -> DVec3, rim: &[u32]) -> DVec3 {
     let first = at(rim[0]);
     let pairs = rim.windows(2).map(|pair| (pair[0], pair[1]));
     pairs
@@ -67,9 +66,8 @@ pub(crate) fn diameter(mesh: &Mesh, rim: &[u32]) -> f64 {
     2.0 * (across(at, rim).length() / 2.0 / std::f64::consts::PI).sqrt()
 }
 
-/// Caps these rims, and returns the share of the area that the caps have.
-pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
-    let before = area(&mesh.vertices, &mesh.triangles);
+/// Caps these rims.
+pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) {
     let mut taken: Vec<u64> = Vec::new();
     let mut on_rim = vec![false; mesh.vertices.len()];
     rims.iter()
@@ -84,12 +82,6 @@ pub(crate) fn close(mesh: &mut Mesh, rims: &[Rim]) -> f64 {
     taken.sort_unstable();
     for rim in rims {
         cap(mesh, rim, &taken);
-    }
-    let after = area(&mesh.vertices, &mesh.triangles);
-    if after > 0.0 {
-        1.0 - before / after
-    } else {
-        0.0
     }
 }
 

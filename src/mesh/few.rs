@@ -9,7 +9,7 @@ use crate::base::linalg::Spread;
 use crate::base::params::Boundary;
 use crate::fit::cells::Sites;
 use crate::mesh::topology::topology;
-use crate::mesh::{Extracted, Mesh, fill_normals};
+use crate::mesh::{Extracted, Ground, Mesh, fill_normals};
 use crate::orient::Signs;
 use glam::{DVec2, DVec3, Vec3};
 
@@ -88,7 +88,7 @@ impl Few {
     pub(crate) fn placed(
         self,
         (sites, signs): (&Sites, &mut Signs),
-        (turned, boundary): (bool, Boundary),
+        (turned, boundary, ground): (bool, Boundary, &Ground),
     ) -> Extracted {
         let Few { mut mesh, closed } = self;
         let points = sites.tree.points.iter();
@@ -103,7 +103,7 @@ impl Few {
             let own = own.into_iter().map(|n| if inverted { -n } else { n });
             signs.normals = own.collect();
         }
-        Extracted::of(mesh, boundary)
+        Extracted::of(mesh, boundary, ground)
     }
 }
 

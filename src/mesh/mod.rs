@@ -10,7 +10,7 @@
 //! 4. `straighten`: vertices on creases are moved onto the curves that several cells tell.
 //! 5. `simplify`: fewer triangles where the surface is flat.
 //! 6. `fairing`: the grain that noise left goes, creases stay.
-//! 7. `caps`, `disc`: membranes over the rims, where the surface has to be closed.
+//! 7. `base`, `caps`, `disc`: walls down to the floor, and membranes over the rims, where the surface has to be closed.
 //! 8. `crossings`: triangles that cross each other are found and mended.
 //!
 //! Of [`few`] points the mesh is made without a field.
@@ -26,6 +26,7 @@
 
 pub mod attach;
 pub(crate) mod band;
+pub(crate) mod base;
 pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;
@@ -58,9 +59,11 @@ use crate::mesh::dual::{Dual, build};
 use crate::mesh::holes::{Holes, decide_holes};
 use crate::mesh::simplify::simplify;
 use crate::mesh::straighten::straighten;
+use crate::mesh::topology::area;
 use crate::mesh::trim::{drop_phantoms, split_bow_ties, trim_rims};
 use glam::{DVec3, Vec3};
 
+pub use crate::mesh::base::Ground;
 pub use crate::mesh::holes::{Hole, MOST_FILLED};
 pub use crate::mesh::surface::{Implicit, Mesh};
 
@@ -71,6 +74,8 @@ pub struct ExtractParams {
     pub resolution: f64,
     /// What happens where no fitted function reaches.
     pub boundary: Boundary,
+    /// What [`Boundary::Base`] stands on.
+    pub ground: Ground,
     /// Widest hole that [`Boundary::Auto`] closes.
     pub max_hole: MaxHole,
     /// Put vertices on creases and corners of the zero set.
@@ -111,6 +116,7 @@ pub struct Extracted {
 /// - `Open`: the surface ends, at most about 1.5 spacings (0.6 of a point's reach) beyond the points: it has no triangle
 ///   in a cell with an unreached corner, and near its rims none that shows the back to [`Implicit::sensor`];
 /// - `Closed`: like `Open`, and then each rim is capped by a membrane, which is flat where the rim is; nothing else moves;
+/// - `Base`: like `Closed`, and rims that stand on the ground are led straight down to it first, where their caps are flat;
 /// - `Auto`: unreached corners take [`Implicit::global`], then each cap for itself stays or goes, by how far it is from the
 ///   points and how it turns ([`holes`]). Closing stops once it takes more cells than the rest of the surface; components
 ///   not closed by then stay open.
@@ -166,10 +172,10 @@ pub fn extract<F: Implicit>(
         fairing::fair(&mut mesh, field.noise() as f32);
     }
     span(1.0)?;
-    let mut extracted = Extracted::of(mesh, params.boundary);
+    let mut extracted = Extracted::of(mesh, params.boundary, &params.ground);
     holes.extend(std::mem::take(&mut extracted.holes));
     holes.sort_by(|a, b| b.diameter.total_cmp(&a.diameter));
-    let closes = params.boundary == Boundary::Closed;
+    let closes = params.boundary.closes();
     Ok(Extracted {
         filled: filled + extracted.filled,
         closed: if closes { open } else { closed },
@@ -182,19 +188,23 @@ pub fn extract<F: Implicit>(
 
 impl Extracted {
     /// A mesh with its rims, which are capped where it has to be closed.
-    pub(crate) fn of(mut mesh: Mesh, boundary: Boundary) -> Extracted {
-        let rims = caps::rims(&mesh);
-        let closed = boundary == Boundary::Closed;
+    pub(crate) fn of(mut mesh: Mesh, boundary: Boundary, ground: &Ground) -> Extracted {
+        let mut rims = caps::rims(&mesh);
+        let closed = boundary.closes();
         let hole = |rim: &caps::Rim| Hole {
             diameter: caps::diameter(&mesh, rim),
             closed,
         };
         let holes = rims.iter().map(hole).collect();
-        let filled = if closed {
-            caps::close(&mut mesh, &rims)
-        } else {
-            0.0
-        };
+        let mut filled = 0.0;
+        if closed && !rims.is_empty() {
+            let before = area(&mesh.vertices, &mesh.triangles);
+            if boundary == Boundary::Base {
+                rims = base::stand(&mut mesh, ground);
+            }
+            caps::close(&mut mesh, &rims);
+            filled = 1.0 - before / area(&mesh.vertices, &mesh.triangles);
+        }
         let crossings = crossings::mend(&mut mesh);
         Extracted {
             mesh,

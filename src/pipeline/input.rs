@@ -162,6 +162,7 @@ impl Input<'_> {
             viewpoints,
             up,
             seen_from_above,
+            floor,
             unit,
             crs,
             faces,
@@ -174,7 +175,7 @@ impl Input<'_> {
             && tree.points.iter().zip(&tree.order).all(place)
             && (&of.colors, &of.normals, &of.attributes) == (colors, normals, attributes)
             && (&of.viewpoints, of.up, of.seen_from_above) == (viewpoints, *up, *seen_from_above)
-            && (of.unit, &of.crs, of.faces) == (*unit, crs, *faces)
+            && (of.unit, of.floor, &of.crs, of.faces) == (*unit, *floor, crs, *faces)
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::base::error::{Error, Result};
 use crate::base::progress::{Part, Progress, Stage};
 use crate::cloud::octree::Octree;
-use crate::cloud::{Cloud, Frame};
+use crate::cloud::{Cloud, Floor, Frame};
 use crate::features::{Features, outliers};
 use crate::pipeline::input::measure;
 use crate::pipeline::scans::Joined;
@@ -26,6 +26,8 @@ pub struct Prepared {
     pub dropped_by: Vec<u8>,
     /// What each step did.
     pub steps: Vec<StepReport>,
+    /// The floor that was dropped: [`Cloud::with_floor`] takes it. Where several were, the last.
+    pub floor: Option<Floor>,
 }
 
 /// Does the steps of a recipe, each with what those before left.
@@ -48,6 +50,7 @@ pub fn prepare(cloud: &Cloud, steps: &[Step], progress: &mut dyn Progress) -> Re
     Ok(Prepared {
         kept: scan.kept,
         dropped_by: scan.dropped_by,
+        floor: floor(&reports),
         steps: reports,
     })
 }
@@ -99,6 +102,7 @@ pub fn prepare_scans(
     Ok(Prepared {
         kept: callers.collect(),
         dropped_by,
+        floor: floor(&reports),
         steps: reports,
     })
 }
@@ -110,6 +114,17 @@ fn spread(labels: &[u32], callers: &[u32], count: usize) -> Vec<u32> {
         all[i as usize] = label;
     }
     all
+}
+
+/// The floor that steps dropped; of other planes the largest that carries.
+fn floor(reports: &[StepReport]) -> Option<Floor> {
+    let of = |report: &StepReport| {
+        let dropped = || report.planes.iter().flatten().filter(|plane| plane.dropped);
+        let floor = dropped().find(|plane| plane.floor);
+        let plane = floor.or_else(|| dropped().find(|plane| plane.carries))?;
+        Floor::new(plane.point, plane.normal.map(f64::from)).ok()
+    };
+    reports.iter().rev().find_map(of)
 }
 
 /// What is wrong with a recipe as a whole.

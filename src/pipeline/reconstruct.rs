@@ -4,8 +4,8 @@ use crate::base::clock::Clock;
 use crate::base::error::{Error, Result};
 use crate::base::params::{Orientation, Outliers, Resolution, Scatter, SurfaceParams};
 use crate::base::progress::Progress;
-use crate::cloud::Cloud;
 use crate::cloud::octree::Octree;
+use crate::cloud::{Cloud, Floor};
 use crate::features::Features;
 use crate::features::noise::quantile;
 use crate::features::scatter;
@@ -14,7 +14,7 @@ use crate::fit::cells::{self, Sites};
 use crate::mesh::attach::attach;
 use crate::mesh::few;
 use crate::mesh::field::Field;
-use crate::mesh::{ExtractParams, Extracted, extract};
+use crate::mesh::{ExtractParams, Extracted, Ground, extract};
 use crate::orient;
 use crate::pipeline::doubtful::{invented, thin};
 use crate::pipeline::input::{Input, Origin, check_attributes};
@@ -113,8 +113,9 @@ fn reconstruct_cloud(
         Some(last) => last.of(&params.reduce, reduce)?,
         None => reduce()?,
     };
+    let ground = ground(&cloud, &tree.points);
     drop(cloud);
-    let input = Measured::new(tree, noise, origin, params);
+    let input = Measured::new((tree, ground), noise, origin, params);
     surface(input, fitted, params, clock)
 }
 
@@ -125,11 +126,12 @@ struct Measured<'a> {
     order: Cow<'a, [u32]>,
     noise: Noise,
     origin: Origin,
+    ground: Ground,
 }
 
 impl<'a> Measured<'a> {
     fn new(
-        tree: Cow<'a, Octree>,
+        (tree, ground): (Cow<'a, Octree>, Ground),
         noise: Noise,
         origin: Origin,
         params: &SurfaceParams,
@@ -144,6 +146,7 @@ impl<'a> Measured<'a> {
             order,
             noise,
             origin,
+            ground,
         }
     }
 }
@@ -160,6 +163,7 @@ fn surface(
         order,
         noise,
         origin,
+        ground,
     } = input;
     let Reduction {
         mut reduced,
@@ -205,10 +209,13 @@ fn surface(
         dropped,
         ..
     } = match few {
-        Some(few) => few.placed((&sites, &mut signs), (params.orient, params.boundary)),
+        Some(few) => few.placed(
+            (&sites, &mut signs),
+            (params.orient, params.boundary, &ground),
+        ),
         None => {
             let field = Field::new(&fits, &signs, &sites, &sensor);
-            let how = extract_params(&sites, params);
+            let how = extract_params(&sites, ground, params);
             extract(&field, &sites.tree.points, &field.reach, &how, &mut clock)?
         }
     };
@@ -370,8 +377,30 @@ fn check_surface(cloud: &Cloud, params: &SurfaceParams) -> Result<()> {
     }
 }
 
+/// What the object stands on: the plane that the cloud knows, or whatever is lowest. Most of the object is over it.
+fn ground(cloud: &Cloud, points: &[Vec3]) -> Ground {
+    let Some(Floor { point, normal }) = cloud.floor else {
+        return Ground {
+            normal: cloud.up.unwrap_or(Vec3::Z).as_dvec3(),
+            height: None,
+        };
+    };
+    let normal = normal.as_dvec3();
+    let height = cloud.frame.to_unit(point).as_dvec3().dot(normal);
+    let over = points.iter().filter(|p| p.as_dvec3().dot(normal) > height);
+    let side = if 2 * over.count() < points.len() {
+        -1.0
+    } else {
+        1.0
+    };
+    Ground {
+        normal: side * normal,
+        height: Some(side * height),
+    }
+}
+
 /// How the surface of these sites is extracted.
-fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
+fn extract_params(sites: &Sites, ground: Ground, params: &SurfaceParams) -> ExtractParams {
     let resolution = match params.resolution {
         Resolution::Edge(edge) => edge,
         Resolution::Auto => {
@@ -389,6 +418,7 @@ fn extract_params(sites: &Sites, params: &SurfaceParams) -> ExtractParams {
     ExtractParams {
         resolution,
         boundary: params.boundary,
+        ground,
         max_hole: params.max_hole,
         sharp: params.sharp,
         most: (params.resolution == Resolution::Auto)

@@ -8,17 +8,16 @@
 
 use crate::base::error::Result;
 use crate::base::groups::Groups;
-use crate::base::par;
 use crate::base::progress::{Progress, Stage};
 use crate::base::sets::Sets;
 use crate::cloud::copies::{copied, copies};
+use crate::cloud::near::each_within;
 use crate::cloud::octree::Octree;
+use crate::cloud::queries::Neighbor;
 use glam::Vec3;
 
 /// The largest gap within a piece unless another is asked for, in spacings.
 pub const GAP: f32 = 3.0;
-/// Points between two looks at whether the caller wants to stop.
-const SLICE: usize = 8192;
 
 /// The pieces of a cloud.
 #[derive(Debug, Clone)]
@@ -143,34 +142,23 @@ fn components(
     gap: f32,
     progress: &mut dyn Progress,
 ) -> Result<Sets> {
-    let n = tree.points.len();
-    let largest = tree.largest(spacing);
-    let mut sets = Sets::new(tree.points.len());
-    let touching = |i: usize| {
-        let (p, own) = (tree.points[i], spacing[i]);
-        let reach = gap * gap * own;
-        let mut found: Vec<u32> = Vec::new();
-        tree.visit(
-            |id, node| node.distance2(p) <= reach * largest[id].min(own),
-            |j| {
-                let other = spacing[j];
-                let asks = other < own || (other == own && j < i);
-                if asks && tree.points[j].distance_squared(p) <= reach * other {
-                    found.push(j as u32);
-                }
-            },
-        );
+    let touching = |i: usize, found: &[Neighbor]| {
+        let own = spacing[i];
+        let touches = |n: &&Neighbor| {
+            let (j, other) = (n.index as usize, spacing[n.index as usize]);
+            let asks = other < own || (other == own && j < i);
+            asks && n.distance2 <= gap * gap * own * other
+        };
         found
+            .iter()
+            .filter(touches)
+            .map(|n| n.index)
+            .collect::<Vec<u32>>()
     };
-    for start in (0..n).step_by(SLICE) {
-        progress.update(Stage::Prepare, start as f32 / n as f32)?;
-        let end = n.min(start + SLICE);
-        let found = par::map(end - start, || (), |k, _| touching(start + k));
-        for (i, found) in (start as u32..).zip(found) {
-            found.iter().for_each(|&j| sets.join(i, j));
-        }
-    }
-    progress.update(Stage::Prepare, 1.0)?;
+    let radius = |i: usize| gap * spacing[i];
+    let mut sets = Sets::new(tree.points.len());
+    let join = |i: usize, found: Vec<u32>| found.iter().for_each(|&j| sets.join(i as u32, j));
+    each_within(tree, &radius, (Stage::Prepare, progress), touching, join)?;
     Ok(sets)
 }
 

@@ -13,9 +13,9 @@
 
 use crate::base::error::Result;
 use crate::base::linalg::Spread;
-use crate::base::par;
-use crate::base::progress::{Progress, Stage};
+use crate::base::progress::{Part, Progress, Stage};
 use crate::base::sort_keys::key;
+use crate::cloud::near::each_nearest;
 use crate::cloud::octree::Octree;
 use crate::cloud::queries::Neighbor;
 use crate::features::Features;
@@ -45,7 +45,6 @@ const FEWEST: usize = 4;
 pub fn halo(tree: &Octree, features: &Features, progress: &mut dyn Progress) -> Result<Vec<bool>> {
     let each = |i: usize, found: &mut Vec<Neighbor>| {
         let p = tree.points[i];
-        tree.knn(p, HOOD.0 + 1, found);
         found.retain(|f| f.index as usize != i);
         if found.len() < HOOD.1 {
             return false;
@@ -72,13 +71,7 @@ pub fn halo(tree: &Octree, features: &Features, progress: &mut dyn Progress) -> 
             .max(OFF.2 * thick);
         off.abs() as f32 > limit
     };
-    par::map_progress(
-        tree.points.len(),
-        4.0,
-        (Stage::Prepare, progress),
-        Vec::new,
-        each,
-    )
+    each_nearest(tree, HOOD.0 + 1, None, (Stage::Prepare, progress), each)
 }
 
 /// Points between two surfaces on a line of sight, in the octree's order; `eye` says where each was seen from. Cost: a tree of
@@ -99,11 +92,13 @@ pub fn between(
     let count = seen.len().max(1) as f32;
     let mut done = 0;
     for same in seen.chunk_by(|a, b| a.0 == b.0) {
-        progress.update(Stage::Prepare, done as f32 / count)?;
+        let share = |done: usize| done as f32 / count;
+        let range = share(done)..share(done + same.len());
         done += same.len();
         let points: Vec<u32> = same.iter().map(|&(_, i)| i).collect();
         let view = View::new(tree, same[0].0, &points);
-        for (&i, fly) in points.iter().zip(view.flying()) {
+        let flying = view.flying(&mut Part::of(Stage::Prepare, progress, range))?;
+        for (&i, fly) in points.iter().zip(flying) {
             flies[i as usize] = fly;
         }
     }
@@ -141,11 +136,10 @@ impl View {
     }
 
     /// In the order of the points given.
-    fn flying(&self) -> Vec<bool> {
+    fn flying(&self, progress: &mut dyn Progress) -> Result<Vec<bool>> {
         let n = self.range.len();
-        let found = par::map(n, Vec::new, |k, found: &mut Vec<Neighbor>| {
-            self.directions
-                .knn(self.directions.points[k], AROUND + 1, found);
+        let told = (Stage::Prepare, progress);
+        let found = each_nearest(&self.directions, AROUND + 1, None, told, |k, found| {
             // The distance of two halved directions, doubled, is what they span at a range of 1.
             let span = |f: &Neighbor| 2.0 * f.distance2.sqrt();
             if span(&found[found.len() - 1]) > FINE {
@@ -162,12 +156,12 @@ impl View {
                 }
             }
             near < FEWEST && behind > 0
-        });
+        })?;
         let mut flies = vec![false; n];
         for (&k, fly) in self.directions.order.iter().zip(found) {
             flies[k as usize] = fly;
         }
-        flies
+        Ok(flies)
     }
 }
 

@@ -350,6 +350,7 @@ pub fn carry(
             .map(|v| v.select(each.clone().map(closest))),
         up: cloud.up,
         seen_from_above: cloud.seen_from_above,
+        floor: cloud.floor,
         unit: cloud.unit,
         crs: cloud.crs.clone(),
         faces: cloud.faces,

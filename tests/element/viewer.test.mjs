@@ -178,6 +178,37 @@ test('which point is meant by a place, what the camera makes of a position, and 
   assert.deepEqual(faults, []);
 });
 
+test('a section draws and finds what is behind a plane alone, of meshes and clouds', async () => {
+  const { act, picture, faults } = await open();
+  for (const name of ['mesh', 'points']) {
+    await act((name) => (name === 'mesh' ? viewer.show(box) : viewer.show(cloud)), name);
+    await act(() => viewer.lookFrom('front'));
+    const whole = silhouette(await picture());
+    const find = () => act((name) => [0.5, 1.5].map((x) => {
+      const { x: across, y: down } = viewer.project([x, 0.5, 0.5]);
+      return (name === 'mesh' ? viewer.pick(across, down) : viewer.pickPoint(across, down))?.position[0] ?? null;
+    }), name);
+    assert.ok((await find()).every((x) => x !== null));
+    await act(() => (viewer.section = { point: [1, 0, 0], normal: [-3, 0, 0] }));
+    const half = silhouette(await picture());
+    assert.ok(Math.abs(half.box.width / whole.box.width - 0.5) < 0.03, `${name}: ${half.box.width} of ${whole.box.width}`);
+    assert.ok(Math.abs(half.box.left - whole.box.left) <= 1, 'the side that the normal points into');
+    const [left, right] = await find();
+    assert.ok(Math.abs(left - 0.5) < 0.03 && right === null, `${name}: ${left} ${right}`);
+    await act(() => (viewer.section = null));
+    assert.ok(Math.abs(silhouette(await picture()).box.width - whole.box.width) <= 1);
+  }
+  const codes = await act(() => [{ point: [0, 0], normal: [1, 0, 0] }, { point: [0, 0, 0], normal: [0, 0, 0] }, { point: [0, NaN, 0], normal: [1, 0, 0] }].map((section) => {
+    try {
+      viewer.section = section;
+    } catch ({ code }) {
+      return code;
+    }
+  }));
+  assert.deepEqual(codes, ['bad-input', 'bad-input', 'bad-input']);
+  assert.deepEqual([await act(() => viewer.section), faults], [null, []]);
+});
+
 test('it is as large as its canvas, however that has its size', async () => {
   const size = () => [document.querySelector('canvas').width, document.querySelector('canvas').clientWidth, document.querySelector('canvas').clientHeight];
   const shown = await open('<canvas width="320" height="240" aria-label="A box"></canvas>', {}, { deviceScaleFactor: 2 });

@@ -24,7 +24,7 @@ export const TYPES = {
 };
 
 /** What lies over the picture, hidden for pixel tests. */
-const PICTURE_ONLY = '.caption, .legend, .tools, .views, .split, .progress, .message { visibility: hidden !important }';
+const PICTURE_ONLY = '.caption, .legend, .tools, .views, .split, .section, .progress, .message { visibility: hidden !important }';
 
 /** Where pictures are kept for people to look at, when this is set. */
 const PICTURES = process.env.POINTWEAVE_PICTURES;

@@ -1,7 +1,7 @@
 // Parts of the page that need no browser, against what is known.
 
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
+import { readFile, readdir } from 'node:fs/promises';
 import { test } from 'node:test';
 import { DEFAULTS, reconstruct, reduce, sample } from 'pointweave';
 import { ticks } from '../../www/src/controls/chart.js';
@@ -24,6 +24,18 @@ const BLINDNESS = {
 
 const linear = (byte) => (byte / 255 <= 0.04045 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
 const luminance = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+
+test('one place knows the ids of the page, and the page has all of them', async () => {
+  const [table, html] = await Promise.all(['src/page.js', 'index.html'].map((name) => readFile(new URL(`../../www/${name}`, import.meta.url), 'utf8')));
+  const wanted = [...table.matchAll(/byId\('([\w-]+)', (\w+)\)/g)];
+  assert.ok(wanted.length > 150);
+  for (const [, id] of wanted) assert.ok(html.includes(`id="${id}"`), id);
+  const sources = (await readdir(new URL('../../www/src/', import.meta.url), { recursive: true })).filter((name) => name.endsWith('.js') && name !== 'page.js');
+  for (const name of sources) {
+    const text = await readFile(new URL(`../../www/src/${name}`, import.meta.url), 'utf8');
+    assert.ok(!/getElementById\('|querySelector\('#/.test(text), name);
+  }
+});
 
 test('the colour map gets lighter evenly, for everybody', () => {
   for (const [who, matrix] of Object.entries(BLINDNESS)) {

@@ -46,21 +46,34 @@ test('dropped files and folders, and a job that was cancelled', { timeout: PATIE
   await site.opened('small.xyz');
   const rows = () => page.$$eval('#dropped-rows li', (all) => all.map((row) => row.innerText.replace(/\s*\n\s*/g, ': ')));
 
-  await t.test('a folder: each file has its line, and another is opened by its button', async () => {
+  await t.test('a folder: its scans are parts of one, and what cannot be read is said to be so', async () => {
     await dropPaths(page, [join(folder, 'site')]);
-    await site.opened('a first.xyz');
-    assert.deepEqual(await rows(), [
-      'site/a first.xyz: open', 'site/broken.ply: Open', 'site/inner/second.xyz: Open', 'site/pot.mtl: used by a mesh that names it',
-    ]);
-    await page.click('#dropped-rows li:nth-child(2) button');
+    await site.opened('2 scans');
+    const parts = await page.$$eval('#parts-rows li', (all) => all.map((row) => row.innerText.replace(/\s*\n\s*/g, ': ')));
+    assert.deepEqual(parts.map((row) => row.replace(/: $/, '')), ['a first.xyz', 'broken.ply: cannot be read', 'second.xyz']);
+    assert.equal(await site.number('inputPoints'), 2000);
+    assert.equal(await page.isVisible('#dropped'), false);
+    assert.equal(await page.isVisible('#message'), false);
+  });
+
+  await t.test('more files than parts of one scan: each has its line, and another is opened by its button', async () => {
+    for (let i = 10; i < 26; i++) await put(`many/ball ${i}.xyz`, toXyz(spherePoints(700 + i)));
+    await put('many/broken.ply', 'ply\nformat ascii 1.0\n');
+    await put('many/pot.mtl', 'newmtl pot\n');
+    await dropPaths(page, [join(folder, 'many')]);
+    await site.opened('ball 10.xyz');
+    assert.equal(await page.isVisible('#parts'), false);
+    const all = await rows();
+    assert.deepEqual([all[0], all[1], ...all.slice(16)], ['many/ball 10.xyz: open', 'many/ball 11.xyz: Open', 'many/broken.ply: Open', 'many/pot.mtl: used by a mesh that names it']);
+    await page.click('#dropped-rows li:nth-child(17) button');
     await page.waitForSelector('#message:not([hidden])');
-    assert.match((await rows())[1], /broken\.ply: cannot be read/);
-    assert.equal(await page.innerText('#caption-title'), 'a first.xyz');
-    await page.click('#dropped-rows li:nth-child(3) button');
-    await site.opened('second.xyz');
+    assert.match((await rows())[16], /broken\.ply: cannot be read/);
+    assert.equal(await page.innerText('#caption-title'), 'ball 10.xyz');
+    await page.click('#dropped-rows li:nth-child(2) button');
+    await site.opened('ball 11.xyz');
     assert.equal(await page.isVisible('#message'), false, 'the message was about another file');
-    assert.match((await rows())[2], /second\.xyz: open/);
-    assert.equal(await site.number('inputPoints'), 1100);
+    assert.match((await rows())[1], /ball 11\.xyz: open/);
+    assert.equal(await site.number('inputPoints'), 711);
   });
 
   await t.test('one file alone has no list, and an empty folder is said to be empty', async () => {

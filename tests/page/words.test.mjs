@@ -11,6 +11,7 @@ import { UNITS } from '../../www/src/controls/standing.js';
 import { NAMES as VIEWS, SIDES } from '../../www/src/look/names.js';
 import { DOUBTS } from '../../www/src/results/doubt-words.js';
 import { MESSAGES } from '../../www/src/results/error-messages.js';
+import { REASONS, reasonWords } from '../../www/src/results/reasons.js';
 import { STAGES } from '../../www/src/results/stages.js';
 import { ROLES } from '../../www/src/session/column-chooser.js';
 import { PRESETS } from '../../www/src/session/light-models.js';
@@ -46,7 +47,7 @@ function textsOfTables() {
     ...ROLES.map(([, name]) => name), ...Object.values(FORMATS).flatMap(Object.values).flatMap(({ use, prints }) => [use, prints ?? '']), ...Object.values(NAMES),
     ...Object.values(PRESETS).flatMap(({ label, kinds }) => [label, ...kinds.map(({ use }) => use)]),
     ...Object.values(ACTIONS).flatMap(Object.values),
-    TELLS, ...Object.values(TOLD_BY), ...Object.values(names), density.title, ...Object.values(error.titles), sharp.title, sharp.sharp, sharp.smooth,
+    ...REASONS, TELLS, ...Object.values(TOLD_BY), ...Object.values(names), density.title, ...Object.values(error.titles), sharp.title, sharp.sharp, sharp.smooth,
   ];
 }
 
@@ -54,6 +55,19 @@ const places = (text) => [...text.matchAll(/\{\w+\}/g)].map(([place]) => place).
 
 const texts = new Set([...await textsOfPage(), ...await textsOfCode(), ...textsOfTables()].filter((text) => !SAME.test(text)));
 if (process.env.POINTWEAVE_TEXTS) console.log(JSON.stringify([...texts], null, 1));
+
+test('every reason that the package gives is known', async () => {
+  const files = ['pkg/engine/choice.js', 'pkg/engine/engine.js', 'pkg/engine/platform.web.js', 'pkg/engine/memory.js', 'src/reduce/mod.rs', 'src/reduce/tolerance.rs', 'src/pipeline/input.rs'];
+  const code = (await Promise.all(files.map((file) => readFile(new URL(`../../${file}`, import.meta.url), 'utf8')))).join('\n');
+  for (const reason of REASONS) {
+    const pieces = reason.split(/\{\w+\}/).filter(Boolean);
+    assert.ok(pieces.every((piece) => code.includes(piece)), reason);
+  }
+  const given = [...code.matchAll(/reason: '([^']+)'/g), ...code.matchAll(/reason: `([^`$]+)/g)].map(([, text]) => text);
+  assert.ok(given.length >= 6);
+  for (const text of given) assert.ok(REASONS.some((reason) => reason.startsWith(text)), text);
+  assert.equal(reasonWords('threads need a worker; memory is limited to 512 MiB here; so it is'), 'Threads need a worker. Memory is limited to 512 MiB here. So it is.');
+});
 
 for (const language of ['de', 'fr']) {
   test(`all texts are said in ${language}`, async () => {

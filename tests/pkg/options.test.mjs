@@ -163,7 +163,7 @@ test('Rust has the same ranges', async () => {
       ['resolution', [['auto', true], [1e-4, true], [0.25, true], [0.26, false], [9e-5, false]]],
       ['reduce', [[false, true], [true, false], [{}, true], [{ maxDepth: 22 }, false]]],
       ...[['kernel', ['biharmonic', 'triharmonic', 'thin-plate']], ['propagation', ['global', 'paper']], ['orientation', ['auto', 'up', 'outward', 'inward']],
-        ['boundary', ['auto', 'closed', 'open']]]
+        ['boundary', ['auto', 'closed', 'base', 'open']]]
         .map(([key, names]) => [key, [...names.map((name) => [name, true]), ['other', false]]]),
       ['orient', [[true, true], [1, false]]],
       ['flip', [[true, true], ['no', false]]],

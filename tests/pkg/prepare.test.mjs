@@ -77,6 +77,21 @@ test('a reduction and a mesh after a recipe are those of what it leaves, told of
   assert.ok(Number.isNaN(mesh.distances.points[count - 1]) && mesh.distances.points[kept[0]] < 0.02);
 });
 
+test('the floor that was dropped stays with the cloud, and a mesh has its base there', async () => {
+  const { cloud } = await prepare(scan, STEPS);
+  const { point, normal } = cloud.floor;
+  assert.ok(normal[1] > 0.999 && Math.abs(point[1] - low) < 0.05, JSON.stringify(cloud.floor));
+  assert.equal((await prepare(scan, [{ step: 'outliers' }])).cloud.floor, undefined);
+  assert.deepEqual((await reduce(cloud)).floor.point, point);
+  const mesh = await reconstruct(scan, { prepare: STEPS, boundary: 'base' });
+  assert.equal(mesh.report.boundaryEdges, 0);
+  const over = Array.from({ length: mesh.positions.length / 3 }, (_, i) => normal.reduce((sum, x, k) => sum + x * (mesh.positions[3 * i + k] - point[k]), 0));
+  assert.ok(Math.abs(Math.min(...over)) < 1e-3, `${Math.min(...over)}`);
+  assert.ok(over.filter((height) => Math.abs(height) < 1e-3).length > 50);
+  for (const floor of [1, { point }, { point, normal: [0, 1] }]) assert.equal((await rejection(reduce({ ...cloud, floor }))).code, 'bad-input');
+  assert.equal((await rejection(reduce({ ...cloud, floor: { point, normal: [0, 0, 0] } }))).code, 'bad-option');
+});
+
 test('regions cut as they say, each with what those before left', async () => {
   const camera = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 20]; // a twentieth of x and y
   const steps = [

@@ -1,9 +1,8 @@
 import { addressOf, readAddress } from './session/address.js';
 import { Comparison } from './controls/comparison.js';
 import { Controls } from './controls/controls.js';
-import { announce, byId } from './dom.js';
-import { DroppedList } from './controls/dropped-list.js';
-import { sortOut } from './session/dropped.js';
+import { announce } from './dom.js';
+import { page } from './page.js';
 import { acceptFiles } from './session/files.js';
 import * as format from './results/format.js';
 import { helpDialog } from './help.js';
@@ -13,16 +12,17 @@ import { tendMenus } from './menus.js';
 import { MessageCard } from './results/messages.js';
 import { offerPictures } from './session/pictures.js';
 import { Numbers } from './results/numbers.js';
+import { Opening } from './controls/opening.js';
 import { ProgressBar } from './results/progress.js';
 import { MESSY, isSample } from './controls/samples.js';
 import { Saving } from './session/saving.js';
+import { Section } from './look/section.js';
 import { Session } from './session/session.js';
-import { ColumnChooser } from './session/column-chooser.js';
 import { Standing } from './controls/standing.js';
 import { SideCard } from './results/side.js';
 import { Sharing } from './session/sharing.js';
 import { Shown } from './state/shown.js';
-import { forget, keep, keepsSome, kept, keyOf } from './state/keeping.js';
+import { kept } from './state/keeping.js';
 import { Steps } from './controls/steps.js';
 import { fromOf, same } from './state/from.js';
 import { contentsOf } from './results/contents.js';
@@ -35,6 +35,7 @@ import { say } from './words/say.js';
 
 /**
  * @import { Key } from './keys.js'
+ * @import { Part } from './session/parts.js'
  * @import { Outcome, Scan, State } from './session/session.js'
  * @import { SampleName } from './controls/samples.js'
  * @import { Edits, Listed, Value } from './state/shown.js'
@@ -45,7 +46,7 @@ const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], '-x': [-1, 0, 0], '-y':
 
 /** Puts the session, the picture and the controls together. */
 export class App {
-  #root = byId('app', HTMLElement);
+  #root = page.app;
   #session = new Session();
   #shown = new Shown(addressOf);
   #steps = new Steps(this.#shown);
@@ -54,7 +55,8 @@ export class App {
     if (chosen) this.#side.stop();
     this.#look.choosePiece(chosen);
   });
-  #tidy = new Tidy(this.#session, this.#look, (recipe) => this.#recut(recipe), () => this.#measure.stop());
+  #tidy = new Tidy(this.#session, this.#look, (recipe) => this.#recut(recipe), () => this.#clear());
+  #section = new Section(this.#look, () => this.#clear());
   #measure = new Measure(this.#look, (size) => this.#stand(size), () => this.#tidy.stop());
   #suggestion = new Suggestion(this.#session, () => this.#tidy.start('floor'));
   /** What an address wants to be cut off the scan that it names, or the next that a person opens. @type {Listed[]} */
@@ -65,15 +67,12 @@ export class App {
     this.#look.choosePiece(chosen);
   });
   #sharing = new Sharing();
-  #run = byId('run', HTMLButtonElement);
-  #choose = acceptFiles((files) => this.#openFiles(files));
-  #columns = new ColumnChooser();
-  /** The files that came in together last. @type {import('./session/dropped.js').Dropped[]} */
-  #together = [];
-  #dropped = new DroppedList((dropped) => this.#openOne(dropped.file));
+  #run = page.run;
+  #choose = acceptFiles((files) => this.#opening.open(files));
   #message = new MessageCard(this.#choose);
+  #opening = new Opening(this.#session, this.#message, (parts) => this.#show(parts), () => this.#recut([{ step: 'register' }, ...(this.#shown.value.edits.recipe ?? [])]));
   #progress = new ProgressBar(() => this.#session.cancel());
-  #saving = new Saving(this.#session, this.#look, (error, name) => this.#message.showError(error, name), () => this.#closeHoles());
+  #saving = new Saving(this.#session, this.#look, (error, name) => this.#message.showError(error, name), (how) => this.#closeHoles(how));
   #controls = new Controls(this.#session.settings, () => this.#settingsChanged(), (target) => meaningOf(target, this.#session.scan));
   #comparison = new Comparison(this.#session, (count) => this.#keep(count), (error) => this.#message.showError(error, say('comparison')));
 
@@ -96,19 +95,19 @@ export class App {
     return this.#session.openAddress(src);
   }
 
-  #openFiles(/** @type {{ file: File, path: string }[]} */ files) {
-    if (!files.length) return this.#message.show('empty-folder', '');
-    const { first, all } = sortOut(files);
-    this.#together = all;
-    this.#dropped.offer(all);
-    return this.#openOne(first.file);
+  /** Shows other parts of the scan, as a step that can be undone. @param {Part[]} parts */
+  #show(parts) {
+    const { scan } = this.#shown.value;
+    if (!scan || !('key' in scan)) return;
+    this.#note({ scan: { ...scan, parts } });
+    this.#opening.parts(parts, scan.key);
   }
 
-  /** Opens a file of those that came in together; a mesh may name the others. @param {File} file @param {string[]} [columns] */
-  #openOne(file, columns) {
-    this.#message.hide();
-    const beside = this.#together.map((other) => other.file).filter((other) => other !== file);
-    return this.#session.openFile(file, { columns, beside, key: keyOf(file) });
+  /** What works in the picture is put away. */
+  #clear() {
+    this.#tidy.stop();
+    this.#measure.stop();
+    this.#section.stop();
   }
 
   /** Shows another value: a step of the history, or what a reload finds. */
@@ -126,7 +125,7 @@ export class App {
     } else if (scan && 'key' in scan) {
       const found = await kept(scan.key);
       if (this.#shown.value.scan !== scan) return; // another step came
-      if (found) return session.openFile(found.file, { ...scan, beside: found.beside });
+      if (found) return this.#opening.kept(found, scan);
       this.#message.show('kept-no-more', scan.key, { standIn: !session.scan });
       this.#stay();
       if (!session.scan) await session.openSample('duck');
@@ -149,32 +148,29 @@ export class App {
   }
 
   #listenToControls() {
-    byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
-    byId('skip', HTMLAnchorElement).addEventListener('click', (event) => {
+    page.choose.addEventListener('click', this.#choose);
+    page.skip.addEventListener('click', (event) => {
       event.preventDefault(); // another # would be another address
-      byId('panel', HTMLElement).focus();
+      page.panel.focus();
     });
     this.#run.addEventListener('click', () => this.#session.run());
     for (const button of this.#samples()) {
       button.addEventListener('click', () => this.#openSample(/** @type {SampleName} */ (button.dataset.sample)));
     }
-    byId('forget', HTMLButtonElement).addEventListener('click', async () => {
-      await forget();
-      await this.#sayKept();
-    });
     const savePicture = offerPictures((type, quality) => this.#look.picture(type, quality), () => this.#session.scan?.file ?? 'scan', (name) => this.#sharing.posted(name));
     /** @type {Key[]} */
     const keys = [
       ...this.#look.keys,
       ...this.#steps.keys,
       { key: 'm', does: say('Measure in the picture'), act: () => this.#measure.toggle() },
+      { key: 'x', does: say('Section plane'), act: () => this.#section.toggle() },
       { key: 's', does: say('Save the picture'), act: savePicture },
       { key: 'o', does: say('Open a scan from this device'), act: this.#choose },
       { key: '?', does: say('This list'), act: () => showHelp() },
       { key: 'Escape', shown: 'Esc', does: say('Close a message or menu, cancel the work'), act: () => this.#escape() },
     ];
     const showHelp = helpDialog(describeKeys(keys));
-    byId('help-open', HTMLButtonElement).addEventListener('click', showHelp);
+    page.helpOpen.addEventListener('click', showHelp);
     listenToKeys(keys);
   }
 
@@ -200,19 +196,18 @@ export class App {
   #opened(/** @type {Scan} */ scan) {
     for (const button of this.#samples()) button.ariaPressed = String(button.dataset.sample === scan.model);
     document.title = `${scan.title} · Pointweave`;
-    byId('caption-title', HTMLElement).textContent = scan.title;
+    page.captionTitle.textContent = scan.title;
     this.#look.opened(scan);
     const known = same(fromOf(scan), this.#shown.value.scan);
     const edits = known ? this.#shown.value.edits : this.#wanted(scan);
     this.#tidy.opened();
     this.#measure.stop();
+    this.#section.stop();
     this.#edit(edits);
     this.#showStanding(scan);
     this.#reset(scan);
-    this.#dropped.opened(scan.given);
-    this.#offerColumns(scan);
     this.#note(known ? {} : { scan: fromOf(scan), edits }, { step: !known });
-    this.#keepFile(known ? undefined : scan.given);
+    this.#opening.opened(scan, known);
     if ((scan.model && !MESSY.includes(scan.model)) || edits.recipe?.length) this.#suggestion.hide();
     else this.#suggestion.opened(scan);
   }
@@ -227,7 +222,7 @@ export class App {
 
   /** Nothing was made of this scan yet. */
   #reset(/** @type {Scan} */ scan) {
-    byId('caption-detail', HTMLElement).textContent = contentsOf(scan, this.#session.whole?.count);
+    page.captionDetail.textContent = contentsOf(scan, this.#session.whole?.count);
     this.#showSize(scan);
     this.#numbers.opened(scan);
     this.#side.show(null, { all: false, piece: false });
@@ -240,6 +235,8 @@ export class App {
     this.#look.cut(scan);
     this.#reset(scan);
     this.#showStanding(scan);
+    this.#opening.registered(scan);
+    this.#section.refit();
     this.#tidy.left();
   }
 
@@ -251,19 +248,6 @@ export class App {
     this.#edit(edits);
     this.#note({ edits });
     this.#session.apply();
-  }
-
-  /** Has the browser keep a file that could be read, and says what it keeps. */
-  async #keepFile(/** @type {File | undefined} */ file) {
-    const named = this.#together.filter((other) => other.kind === 'beside' && other.file !== file).map((other) => other.file);
-    if (file) await keep(file, named);
-    await this.#sayKept();
-  }
-
-  /** Lets a person say what the columns of a table are. */
-  #offerColumns(/** @type {Scan} */ { given, cloud }) {
-    const { file, columns } = cloud;
-    this.#columns.offer(given && file ? { file, columns } : null, (chosen) => given && this.#openOne(given, chosen));
   }
 
   #made(/** @type {Outcome} */ outcome) {
@@ -341,7 +325,7 @@ export class App {
   }
 
   #showSize(/** @type {Scan} */ { frame, cloud: { unit } }) {
-    byId('caption-size', HTMLElement).textContent = `${frame.size.map((edge) => format.length(this.#session.scale * edge)).join(' × ')} ${unit ?? ''}`.trim();
+    page.captionSize.textContent = `${frame.size.map((edge) => format.length(this.#session.scale * edge)).join(' × ')} ${unit ?? ''}`.trim();
   }
 
   get #flipped() {
@@ -365,11 +349,7 @@ export class App {
     if (this.#refused(error)) return;
     const standIn = !this.#session.scan && !model;
     this.#message.showError(error, title, { standIn });
-    if (given) this.#dropped.failed(given);
-    // Whoever knows what the columns of a table are can still have it read.
-    if (given && error?.table) {
-      this.#columns.offer({ columns: [], file: { ...error, table: { ...error.table, weak: true } } }, (chosen) => this.#openOne(given, chosen));
-    }
+    if (given) this.#opening.failed(given, error);
     this.#run.hidden = !this.#session.scan || Boolean(this.#session.outcome);
     this.#stay();
     if (standIn) this.#session.openSample('duck');
@@ -391,6 +371,7 @@ export class App {
     if (this.#message.open) this.#message.hide();
     else if (this.#tidy.open) this.#tidy.stop();
     else if (this.#measure.open) this.#measure.stop();
+    else if (this.#section.open) this.#section.stop();
     else if (this.#side.choosing) this.#side.stop();
     else if (this.#standing.picking) this.#standing.stop();
     else this.#session.cancel();
@@ -402,8 +383,8 @@ export class App {
     this.#settingsChanged();
   }
 
-  #closeHoles() {
-    this.#session.settings.set('boundary', 'closed');
+  #closeHoles(/** @type {'closed' | 'base'} */ how) {
+    this.#session.settings.set('boundary', how);
     this.#settingsChanged();
   }
 
@@ -423,11 +404,6 @@ export class App {
   #noteAddress(/** @type {Value} */ value) {
     const { scan } = this.#session;
     this.#sharing.show(addressOf(value), scan, `${scan?.file ?? 'scan'}-mesh.glb`);
-  }
-
-  /** Says whether the browser keeps scans of the person's. */
-  async #sayKept() {
-    byId('kept', HTMLElement).hidden = !(await keepsSome());
   }
 
   /** Somebody put another # behind the same address. */

@@ -1,4 +1,5 @@
-import { byId, element } from './dom.js';
+import { element } from './dom.js';
+import { page } from './page.js';
 
 /**
  * The dialog that lists the keys.
@@ -6,8 +7,8 @@ import { byId, element } from './dom.js';
  * @returns {() => void} shows it
  */
 export function helpDialog(list) {
-  const dialog = byId('help', HTMLDialogElement);
-  const rows = byId('help-keys', HTMLElement);
+  const dialog = page.help;
+  const rows = page.helpKeys;
   for (const { keys, does } of list) {
     const row = element('div');
     const names = element('dt');
@@ -15,7 +16,7 @@ export function helpDialog(list) {
     row.append(names, element('dd', { textContent: does }));
     rows.append(row);
   }
-  byId('help-close', HTMLButtonElement).addEventListener('click', () => dialog.close());
+  page.helpClose.addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
     if (event.target === dialog) dialog.close();
   });

@@ -1,6 +1,6 @@
 import { App } from './app.js';
 import { showBuilding } from './building.js';
-import { byId } from './dom.js';
+import { page } from './page.js';
 import { workOffline } from './offline.js';
 import { Streamed, isTileset } from './streaming/streamed.js';
 import { canCompute } from './support.js';
@@ -12,8 +12,8 @@ const src = new URLSearchParams(location.search).get('src');
 if (isTileset(src)) new Streamed(src).start();
 else if (canCompute()) new App().start();
 else {
-  byId('app', HTMLElement).dataset.state = 'unsupported';
-  byId('no-engine', HTMLElement).hidden = false;
+  page.app.dataset.state = 'unsupported';
+  page.noEngine.hidden = false;
 }
 workOffline();
 if (import.meta.env.BUILDING.length) showBuilding(import.meta.env.BUILDING);

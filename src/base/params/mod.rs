@@ -17,6 +17,13 @@ include!("table.rs");
 /// The name that stands for a cloud's colours in [`ReduceParams::attributes`].
 pub const COLORS: &str = "colors";
 
+impl Boundary {
+    /// Whether every rim is closed.
+    pub(crate) fn closes(self) -> bool {
+        matches!(self, Boundary::Closed | Boundary::Base)
+    }
+}
+
 impl Target {
     /// How many of `n` points it keeps, where that does not hang on the surface.
     pub fn count(self, n: usize) -> Option<usize> {

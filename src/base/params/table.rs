@@ -172,6 +172,10 @@ table! {
         Auto "auto" "Close small ones",
         /// As `open`, and every rim is capped by a membrane, which is flat where the rim is.
         Closed "closed" "Close all",
+        /// As `closed`, and where the surface stands on the floor it goes straight down to it and ends in a flat base, for a 3D
+        /// print. The floor is the cloud's `floor`, which a step `plane` of `prepare` leaves; without it the lowest place, across
+        /// `up` (z without).
+        Base "base" "Flat base",
         /// The surface ends where the points end.
         Open "open" "Leave open",
     }

@@ -1,4 +1,5 @@
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { drawChart } from './chart.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
@@ -18,9 +19,9 @@ export class Comparison {
   #session;
   #choose;
   #fail;
-  #box = byId('comparison', HTMLDetailsElement);
-  #chart = /** @type {SVGElement} */ (/** @type {unknown} */ (document.getElementById('chart')));
-  #note = byId('chart-note', HTMLElement);
+  #box = page.comparison;
+  #chart = page.chart;
+  #note = page.chartNote;
   /** @type {Dot[]} */
   #dots = [];
   /** What the dots belong to. @type {import('../session/session.js').Scan | null} */

@@ -1,5 +1,6 @@
 import { Amount } from './amount.js';
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import { CONTROLS, PLACES, TARGETS, defaultOf } from './settings.js';
 import { say } from '../words/say.js';
 
@@ -17,10 +18,10 @@ export class Controls {
   #settings;
   #changed;
   #describe;
-  #kind = byId('target-kind', HTMLSelectElement);
-  #count = byId('keep-count', HTMLOutputElement);
-  #reset = byId('reset', HTMLButtonElement);
-  #expert = byId('expert', HTMLDetailsElement);
+  #kind = page.targetKind;
+  #count = page.keepCount;
+  #reset = page.reset;
+  #expert = page.expert;
   #keep;
   /** Each shows what the settings say. @type {(() => void)[]} */
   #refreshers = [];
@@ -39,9 +40,9 @@ export class Controls {
     this.#changed = changed;
     this.#describe = describe;
     this.#keep = new Amount(
-      byId('keep-slider', HTMLInputElement),
-      byId('keep-field', HTMLInputElement),
-      byId('keep-error', HTMLElement),
+      page.keepSlider,
+      page.keepField,
+      page.keepError,
       (value) => this.#say({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
       (value) => this.#choose({ kind: this.#target.kind, value: /** @type {number} */ (value) }),
     );
@@ -50,7 +51,8 @@ export class Controls {
       settings.reset();
       this.#changed();
     });
-    for (const [place, keys] of Object.entries(PLACES)) byId(`options-${place}`, HTMLElement).append(...keys.map((key) => this.#make(key)));
+    const places = { plain: page.optionsPlain, more: page.optionsMore, expert: page.optionsExpert };
+    for (const [place, keys] of Object.entries(PLACES)) places[/** @type {keyof typeof places} */ (place)].append(...keys.map((key) => this.#make(key)));
     this.#expert.addEventListener('toggle', () => this.#offerKinds());
     this.#refresh();
   }
@@ -63,9 +65,9 @@ export class Controls {
     const label = say(named);
     const high = target.kind === 'count' ? Math.max(range.low + 1, points) : range.high;
     this.#offerKinds();
-    for (const id of ['keep-slider', 'keep-field']) byId(id, HTMLInputElement).ariaLabel = range.unit ? say('{name}, in per cent', { name: label }) : label;
-    byId('keep-unit', HTMLElement).textContent = range.unit;
-    byId('keep-title', HTMLElement).textContent = COUNTED.has(target.kind) ? say('Points to keep') : label;
+    for (const input of [page.keepSlider, page.keepField]) input.ariaLabel = range.unit ? say('{name}, in per cent', { name: label }) : label;
+    page.keepUnit.textContent = range.unit;
+    page.keepTitle.textContent = COUNTED.has(target.kind) ? say('Points to keep') : label;
     this.#keep.set({ ...range, high }, target.value);
     this.#say(target);
     this.#refresh();

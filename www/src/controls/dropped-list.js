@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 
 /** @import { Dropped } from '../session/dropped.js' */
@@ -8,8 +9,8 @@ const ROWS = 40;
 
 /** What becomes of each of several files that came in together, and a way to open another of them. */
 export class DroppedList {
-  #box = byId('dropped', HTMLElement);
-  #rows = byId('dropped-rows', HTMLUListElement);
+  #box = page.dropped;
+  #rows = page.droppedRows;
   #open;
   /** @type {Dropped[]} */
   #all = [];

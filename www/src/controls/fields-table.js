@@ -10,7 +10,7 @@ export const FIELDS = {
   flip: { in: 'reconstruct', kind: 'flag', label: 'Flip', hint: 'The other side of everything is out.' },
   sharp: { in: 'reconstruct', kind: 'flag', label: 'Keep creases sharp', hint: 'Edges and corners stay; without it they are rounded.' },
   fairing: { in: 'reconstruct', kind: 'flag', label: 'Smooth the grain', hint: 'What noise left in the surface is smoothed away; edges stay.' },
-  boundary: { in: 'reconstruct', kind: 'choice', label: 'Holes', hint: 'What happens where nothing was scanned.', choices: { auto: 'Close small ones', closed: 'Close all', open: 'Leave open' } },
+  boundary: { in: 'reconstruct', kind: 'choice', label: 'Holes', hint: 'What happens where nothing was scanned.', choices: { auto: 'Close small ones', closed: 'Close all', base: 'Flat base', open: 'Leave open' } },
 };
 
 /** The ways to say how much is kept; `start` is where a change to it begins. */

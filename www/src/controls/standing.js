@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -16,12 +17,12 @@ const CHOICES = /** @type {const} */ (['mm', 'cm', 'm', 'in', 'ft']);
 
 /** Says in words which way is up and what a coordinate is, and lets a person say it better. */
 export class Standing {
-  #words = byId('stand-words', HTMLElement);
-  #side = byId('stand-up', HTMLSelectElement);
-  #unit = byId('stand-unit', HTMLSelectElement);
-  #pick = byId('stand-pick', HTMLButtonElement);
-  #stale = byId('stand-stale', HTMLElement);
-  #scale = byId('scale-note', HTMLElement);
+  #words = page.standWords;
+  #side = page.standUp;
+  #unit = page.standUnit;
+  #pick = page.standPick;
+  #stale = page.standStale;
+  #scale = page.scaleNote;
   #ask;
 
   /**
@@ -45,7 +46,7 @@ export class Standing {
       changed({ up: /** @type {Axis} */ (this.#side.value) });
       announce(this.#words.textContent ?? '');
     });
-    byId('scale-reset', HTMLButtonElement).addEventListener('click', () => changed({ scale: undefined }));
+    page.scaleReset.addEventListener('click', () => changed({ scale: undefined }));
     this.#unit.addEventListener('change', () => {
       changed({ unit: /** @type {Unit} */ (this.#unit.value) });
       announce(this.#words.textContent ?? '');
@@ -71,7 +72,7 @@ export class Standing {
    */
   show({ up, unit, scale }, { picked, mesh, stale }) {
     this.#scale.hidden = scale === 1;
-    byId('scale-words', HTMLElement).textContent = say('Everything is shown and saved {factor} as large as the file says.', { factor: format.times(scale) });
+    page.scaleWords.textContent = say('Everything is shown and saved {factor} as large as the file says.', { factor: format.times(scale) });
     this.#stale.hidden = !stale;
     this.#pick.hidden = !mesh;
     if (!mesh) this.stop();

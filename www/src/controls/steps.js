@@ -1,4 +1,5 @@
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 
 /** @import { Key } from '../keys.js' */
@@ -7,8 +8,8 @@ import { say } from '../words/say.js';
 /** Undo and redo: of the scan, the settings and what was said of it. */
 export class Steps {
   #shown;
-  #undo = byId('undo', HTMLButtonElement);
-  #redo = byId('redo', HTMLButtonElement);
+  #undo = page.undo;
+  #redo = page.redo;
 
   constructor(/** @type {Shown} */ shown) {
     this.#shown = shown;

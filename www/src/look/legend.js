@@ -1,12 +1,13 @@
 import { cssGradient } from 'pointweave/viewer';
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 
 /** @import { Kinds, Scale } from 'pointweave/viewer' */
 
 /** How the colours in the picture are read. */
 export class Legend {
-  #box = byId('legend', HTMLElement);
+  #box = page.legend;
 
   /** @param {Scale | Kinds | null} legend @param {boolean} [coming]  it is being made */
   show(legend, coming = false) {

@@ -1,5 +1,6 @@
 import { PAINTS, canPaint, createViewer, paintOf } from 'pointweave/viewer';
-import { announce, byId, element } from '../dom.js';
+import { announce, element, radio } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { Legend } from './legend.js';
@@ -39,12 +40,12 @@ export class Look {
   #turned;
   #viewer = openViewer();
   #legend = new Legend();
-  #views = byId('views', HTMLFieldSetElement);
-  #paints = byId('paints', HTMLElement);
-  #edges = byId('edges', HTMLInputElement);
-  #parallel = byId('parallel', HTMLInputElement);
-  #boxes = byId('boxes', HTMLInputElement);
-  #pointSize = byId('point-size', HTMLInputElement);
+  #views = page.views;
+  #paints = page.paints;
+  #edges = page.edges;
+  #parallel = page.parallel;
+  #boxes = page.boxes;
+  #pointSize = page.pointSize;
   /** @type {Scan | null} */
   #scan = null;
   /** @type {Outcome | null} */
@@ -53,7 +54,7 @@ export class Look {
   #kept = null;
   /** It has been put beside another. */
   #beside = false;
-  #keep = byId('keep-mesh', HTMLButtonElement);
+  #keep = page.keepMesh;
   /** @type {Choice} */
   #view = 'points';
   /** The scan has colours that say what would be cut off. */
@@ -71,7 +72,7 @@ export class Look {
   #painting = new Painting();
   /** Layers whose colours are being made. @type {Set<View>} */
   #awaited = new Set();
-  #piece = new PieceChoice(byId('canvas', HTMLCanvasElement), (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
+  #piece = new PieceChoice(page.canvas, (x, y) => this.#viewer?.pick(x, y) ?? null, () => this.#viewer?.insets ?? { left: 0, right: 0 });
   #split = new Split(() => this.#show(this.#view), (view) => this.#viewer && (this.#viewer.view = view));
 
   /**
@@ -84,18 +85,18 @@ export class Look {
     this.#changed = changed;
     this.#turned = turned;
     const viewer = this.#viewer;
-    byId('no-webgl', HTMLElement).hidden = Boolean(viewer);
+    page.noWebgl.hidden = Boolean(viewer);
     this.#paints.append(...PAINTS.map((name) => paintChoice(name, WORDS.names[name])));
     if (viewer) {
       followTheme((theme) => (viewer.colors = theme));
       tellWhenLost(viewer);
     }
-    byId('canvas', HTMLCanvasElement).addEventListener('dblclick', ({ offsetX, offsetY }) => {
+    page.canvas.addEventListener('dblclick', ({ offsetX, offsetY }) => {
       const place = this.placeAt(offsetX, offsetY);
       if (place) viewer?.pivot(place);
     });
-    byId('fit', HTMLButtonElement).addEventListener('click', () => viewer?.fit());
-    byId('up', HTMLButtonElement).addEventListener('click', () => this.#turnUp());
+    page.fit.addEventListener('click', () => viewer?.fit());
+    page.up.addEventListener('click', () => this.#turnUp());
     this.#views.addEventListener('change', (event) => this.#choose(/** @type {Choice} */ (valueOf(event))));
     this.#paints.addEventListener('change', (event) => this.#choosePaint(/** @type {PaintName} */ (valueOf(event))));
     this.#edges.addEventListener('change', () => viewer?.showEdges(this.#edges.checked));
@@ -114,9 +115,8 @@ export class Look {
 
   /** What to show of the next scan, where an address says so. @param {string | null} view @param {string | null} paint */
   wish(view, paint) {
-    const wanted = VIEWS.find((name) => name === view) ?? null;
-    this.#chosen = wanted;
-    this.#wished = wanted !== null;
+    this.#chosen = VIEWS.find((name) => name === view) ?? null;
+    this.#wished = this.#chosen !== null;
     this.#paint = PAINTS.find((name) => name === paint) ?? 'natural';
     if (this.#outcome) this.#settle();
   }
@@ -224,6 +224,11 @@ export class Look {
   /** Leaves room at the lower edge, in CSS pixels; by default that for the views. @param {number} [height] */
   leave(height = INSETS.bottom) {
     if (this.#viewer) this.#viewer.insets = { bottom: height };
+  }
+
+  /** The box of what is shown. */
+  get frame() {
+    return this.#scan?.frame ?? null;
   }
 
   /** Where things are in the picture; null where there is none. @returns {import('pointweave/viewer').Viewer | null} */
@@ -417,7 +422,7 @@ export class Look {
 /** The viewer, or null where there is no WebGL 2: the rest of the page works without it. */
 function openViewer() {
   try {
-    const viewer = createViewer(byId('canvas', HTMLCanvasElement), { embedded: false, insets: INSETS });
+    const viewer = createViewer(page.canvas, { embedded: false, insets: INSETS });
     const aside = matchMedia(ASIDE);
     const follow = () => (viewer.insets = { right: aside.matches ? TOOLS : 0 });
     aside.addEventListener('change', follow);
@@ -442,8 +447,4 @@ function paintChoice(/** @type {string} */ name, /** @type {string} */ words) {
 
 function valueOf(/** @type {Event} */ event) {
   return /** @type {HTMLInputElement} */ (event.target).value;
-}
-
-function radio(/** @type {'view' | 'paint'} */ name, /** @type {string} */ value) {
-  return /** @type {HTMLInputElement} */ (document.querySelector(`input[name="${name}"][value="${value}"]`));
 }

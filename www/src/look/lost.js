@@ -1,5 +1,5 @@
 import { setConsoleFunction } from 'three';
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 
 /** What three.js says of it; the page says it better. */
 const SAID = /Context (Lost|Restored)/;
@@ -10,10 +10,10 @@ const SAID = /Context (Lost|Restored)/;
  * @param {import('pointweave/viewer').Viewer} viewer
  */
 export function tellWhenLost(viewer) {
-  const note = byId('graphics-lost', HTMLElement);
+  const note = page.graphicsLost;
   viewer.addEventListener('contextlost', () => (note.hidden = false));
   viewer.addEventListener('contextrestored', () => (note.hidden = true));
-  byId('graphics-reload', HTMLButtonElement).addEventListener('click', () => location.reload());
+  page.graphicsReload.addEventListener('click', () => location.reload());
   setConsoleFunction((/** @type {'log' | 'warn' | 'error'} */ type, /** @type {unknown} */ message, /** @type {unknown[]} */ ...rest) => {
     if (!SAID.test(String(message))) console[type](message, ...rest);
   });

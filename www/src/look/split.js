@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -9,12 +9,12 @@ const STEP = 0.02;
 
 /** The divider between two views beside each other: it is dragged, or moved with the arrows. */
 export class Split {
-  #stage = byId('stage', HTMLElement);
-  #box = byId('split', HTMLElement);
-  #handle = byId('split-handle', HTMLElement);
-  #left = byId('split-left', HTMLSelectElement);
-  #right = byId('split-right', HTMLSelectElement);
-  #words = [byId('split-left-words', HTMLElement), byId('split-right-words', HTMLElement)];
+  #stage = page.stage;
+  #box = page.split;
+  #handle = page.splitHandle;
+  #left = page.splitLeft;
+  #right = page.splitRight;
+  #words = [page.splitLeftWords, page.splitRightWords];
   #moved;
   /** Where it is, as a share of the width. */
   at = 0.5;

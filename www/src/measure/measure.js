@@ -1,4 +1,5 @@
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import { Still } from '../look/still.js';
 import { UNITS } from '../controls/standing.js';
 import * as format from '../results/format.js';
@@ -23,16 +24,16 @@ export class Measure {
   #look;
   #changed;
   #began;
-  #root = byId('app', HTMLElement);
-  #button = byId('measure', HTMLButtonElement);
-  #bar = byId('measure-bar', HTMLElement);
-  #words = byId('measure-words', HTMLElement);
-  #over = byId('measure-over', HTMLElement);
+  #root = page.app;
+  #button = page.measure;
+  #bar = page.measureBar;
+  #words = page.measureWords;
+  #over = page.measureOver;
   #line = /** @type {SVGPathElement} */ (this.#over.querySelector('path'));
-  #real = byId('measure-real', HTMLElement);
-  #length = byId('measure-length', HTMLInputElement);
-  #unit = byId('measure-unit', HTMLSelectElement);
-  #set = byId('measure-set', HTMLButtonElement);
+  #real = page.measureReal;
+  #length = page.measureLength;
+  #unit = page.measureUnit;
+  #set = page.measureSet;
   #click;
   /** In the coordinates of the file. @type {Triple[]} */
   #places = [];
@@ -45,10 +46,10 @@ export class Measure {
     this.#look = look;
     this.#changed = changed;
     this.#began = began;
-    this.#click = new Still(byId('canvas', HTMLCanvasElement), (x, y) => this.#clicked(x, y), () => look.aim?.insets ?? { left: 0, right: 0 });
+    this.#click = new Still(page.canvas, (x, y) => this.#clicked(x, y), () => look.aim?.insets ?? { left: 0, right: 0 });
     this.#unit.append(...CHOICES.map((value) => element('option', { value, textContent: value, title: say(UNITS[value]) })));
     this.#button.addEventListener('click', () => this.toggle());
-    byId('measure-close', HTMLButtonElement).addEventListener('click', () => this.stop());
+    page.measureClose.addEventListener('click', () => this.stop());
     this.#length.addEventListener('input', () => (this.#set.disabled = !(this.#length.valueAsNumber > 0)));
     this.#length.addEventListener('keydown', ({ key }) => key === 'Enter' && !this.#set.disabled && this.#correct());
     this.#set.addEventListener('click', () => this.#correct());
@@ -71,8 +72,8 @@ export class Measure {
     this.#places = [];
     this.#show();
     this.#look.leave(this.#bar.offsetHeight + MARGIN);
-    byId('canvas', HTMLCanvasElement).focus({ preventScroll: true });
-    byId('stage', HTMLElement).scrollIntoView({ block: 'nearest' });
+    page.canvas.focus({ preventScroll: true });
+    page.stage.scrollIntoView({ block: 'nearest' });
   }
 
   stop() {

@@ -5,7 +5,7 @@ import * as format from './format.js';
 export function contentsOf({ model, count, cloud, kept }, all = count) {
   const { faces = 0, sampled = 0 } = cloud.file ?? {};
   const out = Object.values(cloud.skipped ?? {}).reduce((sum, count) => sum + count, 0);
-  const points = kept ? say('{count} of {points}', { count: format.count(count), points: format.points(all) }) : format.points(count);
+  const points = kept && count < all ? say('{count} of {points}', { count: format.count(count), points: format.points(all) }) : format.points(count);
   const parts = [model ? say('simulated scan') : '', points];
   if (sampled) parts.push(say('taken from {faces} faces', { faces: format.count(faces) }));
   else if (faces) parts.push(say('the corners of {faces} faces', { faces: format.count(faces) }));

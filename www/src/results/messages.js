@@ -1,15 +1,15 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 import { MESSAGES } from './error-messages.js';
 
 /** The card over the picture; it leaves everything else usable. */
 export class MessageCard {
-  #box = byId('message', HTMLElement);
-  #choose = byId('message-choose', HTMLButtonElement);
+  #box = page.message;
+  #choose = page.messageChoose;
 
   constructor(/** @type {() => void} */ choose) {
     this.#choose.addEventListener('click', choose);
-    byId('message-close', HTMLButtonElement).addEventListener('click', () => this.hide());
+    page.messageClose.addEventListener('click', () => this.hide());
   }
 
   get open() {
@@ -29,10 +29,10 @@ export class MessageCard {
   /** @param {string} code @param {string} detail @param {{ standIn?: boolean }} [how] */
   show(code, detail, { standIn = false } = {}) {
     const { title, text, advice } = MESSAGES[code] ?? MESSAGES.internal;
-    byId('message-title', HTMLElement).textContent = say(title);
-    byId('message-text', HTMLElement).textContent = say(text);
-    byId('message-advice', HTMLElement).textContent = standIn ? `${say(advice)} ${say('A sample is shown instead.')}` : say(advice);
-    byId('message-detail', HTMLElement).textContent = detail;
+    page.messageTitle.textContent = say(title);
+    page.messageText.textContent = say(text);
+    page.messageAdvice.textContent = standIn ? `${say(advice)} ${say('A sample is shown instead.')}` : say(advice);
+    page.messageDetail.textContent = detail;
     this.#box.hidden = false;
   }
 

@@ -1,9 +1,10 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { copyText } from '../clipboard.js';
 import { doubtWords } from './doubt-words.js';
 import * as format from './format.js';
 import { stageWords } from './stages.js';
 import { say } from '../words/say.js';
+import { reasonWords } from './reasons.js';
 
 /** @import { Outcome, Scan } from '../session/session.js' */
 
@@ -12,19 +13,19 @@ import { say } from '../words/say.js';
  * the number itself, in file units, fractions, bytes and milliseconds.
  */
 export class Numbers {
-  #box = byId('numbers', HTMLElement);
-  #engine = byId('engine', HTMLElement);
-  #reason = byId('engine-reason', HTMLElement);
-  #stages = byId('stages', HTMLUListElement);
-  #summary = byId('made-summary', HTMLElement);
-  #doubt = byId('doubt', HTMLElement);
+  #box = page.numbers;
+  #engine = page.engine;
+  #reason = page.engineReason;
+  #stages = page.stages;
+  #summary = page.madeSummary;
+  #doubt = page.doubt;
   #json = '';
   /** @type {import('pointweave').Unit | undefined} */
   #unit;
   #scale = 1;
 
   constructor() {
-    const copy = byId('copy-json', HTMLButtonElement);
+    const copy = page.copyJson;
     copy.addEventListener('click', () => copyText(this.#json, copy));
   }
 
@@ -34,13 +35,13 @@ export class Numbers {
     for (const cell of this.#box.querySelectorAll('data')) put(cell, undefined, String);
     this.#set('inputPoints', count, format.count);
     this.#doubt.hidden = true;
-    byId('origin', HTMLElement).hidden = !origin;
+    page.origin.hidden = !origin;
     ['X', 'Y', 'Z'].forEach((axis, i) => this.#set(`origin${axis}`, origin?.[i], format.count));
     this.#engine.textContent = '–';
     this.#reason.textContent = '';
     this.#summary.textContent = '';
     this.#json = '';
-    byId('copy-json', HTMLButtonElement).disabled = true;
+    page.copyJson.disabled = true;
     this.#stages.replaceChildren();
     this.stale();
   }
@@ -49,7 +50,7 @@ export class Numbers {
   measure(unit, scale) {
     this.#unit = unit;
     this.#scale = scale;
-    byId('error-unit', HTMLElement).textContent = say(unit ? 'length' : 'file units');
+    page.errorUnit.textContent = say(unit ? 'length' : 'file units');
     for (const name of ['errorMean', 'errorRms', 'errorMax']) {
       const value = this.#box.querySelector(`data[data-number="${name}"]`)?.getAttribute('value');
       if (value !== null && value !== undefined) this.#set(name, Number(value), (length) => this.#length(length));
@@ -85,11 +86,11 @@ export class Numbers {
       this.#set(`${name}Share`, share, format.percent);
     }
     this.#engine.textContent = engineWords(report);
-    this.#reason.textContent = sentence(report.reason);
+    this.#reason.textContent = reasonWords(report.reason);
     this.#summary.textContent = format.duration(report.totalMs);
     const { title, count, frame: { size, diagonal }, cloud: { origin } } = scan;
     this.#json = JSON.stringify({ scan: { title, count, size, diagonal, origin }, settings, report }, null, 2);
-    byId('copy-json', HTMLButtonElement).disabled = false;
+    page.copyJson.disabled = false;
     this.#showStages(report.ms);
     this.#box.dataset.fresh = 'true';
   }
@@ -116,10 +117,6 @@ export class Numbers {
       }),
     );
   }
-}
-
-function sentence(/** @type {string} */ reason) {
-  return reason && `${reason[0].toUpperCase()}${reason.slice(1)}.`;
 }
 
 function engineWords(/** @type {{ build: string, threads: number }} */ { build, threads }) {

@@ -1,4 +1,5 @@
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { stageWords } from './stages.js';
 
 /** A job this short shows no bar: it would only flash. */
@@ -6,15 +7,15 @@ const PATIENCE_MS = 180;
 
 /** The bar over the picture: which stage, how far, how long, and Cancel. */
 export class ProgressBar {
-  #box = byId('progress', HTMLElement);
-  #stage = byId('progress-stage', HTMLElement);
-  #time = byId('progress-time', HTMLElement);
-  #bar = byId('progress-bar', HTMLProgressElement);
+  #box = page.progress;
+  #stage = page.progressStage;
+  #time = page.progressTime;
+  #bar = page.progressBar;
   #started = 0;
   #timers = [0, 0];
 
   constructor(/** @type {() => void} */ cancel) {
-    byId('cancel', HTMLButtonElement).addEventListener('click', cancel);
+    page.cancel.addEventListener('click', cancel);
   }
 
   start(/** @type {string} */ words) {

@@ -1,15 +1,16 @@
 import { sideInWords } from 'pointweave';
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 
 /** @import { SurfaceMesh } from 'pointweave' */
 
 /** Which side is out: what told it, and a button that turns it over. */
 export class SideCard {
-  #box = byId('side', HTMLElement);
-  #words = byId('side-words', HTMLElement);
-  #flip = byId('flip', HTMLButtonElement);
-  #piece = byId('flip-piece', HTMLButtonElement);
+  #box = page.side;
+  #words = page.sideWords;
+  #flip = page.flip;
+  #piece = page.flipPiece;
   #ask;
 
   /**

@@ -1,4 +1,5 @@
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 
 /** @import { FileCloud } from 'pointweave' */
@@ -14,11 +15,11 @@ const AXES = ['x', 'y', 'z'];
 
 /** The first rows of a table of text, with a chooser over each column. */
 export class ColumnChooser {
-  #dialog = byId('columns', HTMLDialogElement);
-  #table = byId('columns-table', HTMLTableElement);
-  #say = byId('columns-missing', HTMLElement);
-  #open = byId('columns-open', HTMLButtonElement);
-  #read = byId('columns-read', HTMLButtonElement);
+  #dialog = page.columns;
+  #table = page.columnsTable;
+  #say = page.columnsMissing;
+  #open = page.columnsOpen;
+  #read = page.columnsRead;
   /** @type {HTMLSelectElement[]} */
   #selects = [];
   /** @type {(columns: string[]) => void} */
@@ -26,7 +27,7 @@ export class ColumnChooser {
 
   constructor() {
     this.#open.addEventListener('click', () => this.#dialog.showModal());
-    byId('columns-close', HTMLButtonElement).addEventListener('click', () => this.#dialog.close());
+    page.columnsClose.addEventListener('click', () => this.#dialog.close());
     this.#read.addEventListener('click', () => {
       this.#dialog.close();
       this.#chosen(this.#columns);

@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { filesOf } from './dropped.js';
 
 /**
@@ -7,8 +7,8 @@ import { filesOf } from './dropped.js';
  * @returns {() => void} shows the chooser
  */
 export function acceptFiles(take) {
-  const input = byId('file', HTMLInputElement);
-  const veil = byId('veil', HTMLElement);
+  const input = page.file;
+  const veil = page.veil;
   const choose = () => input.click();
   const open = (/** @type {File[]} */ files) => take(files.map((file) => ({ file, path: file.name })));
 

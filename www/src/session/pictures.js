@@ -1,4 +1,5 @@
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 import { saveFile } from './files.js';
 
@@ -19,8 +20,8 @@ export function offerPictures(picture, stem, posted) {
     saveFile(blob, `${stem()}.png`);
     announce(say('{name} saved', { name: `${stem()}.png` }));
   };
-  byId('picture', HTMLButtonElement).addEventListener('click', save);
-  byId('poster', HTMLButtonElement).addEventListener('click', async () => {
+  page.picture.addEventListener('click', save);
+  page.poster.addEventListener('click', async () => {
     // A browser that writes no WebP gives a PNG.
     const blob = await picture('image/webp', POSTER_QUALITY);
     if (!blob) return;

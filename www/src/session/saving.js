@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import { scaled } from '../measure/lengths.js';
 import { compressAside } from './compressing.js';
 import { WebSaving } from './web-saving.js';
@@ -44,14 +45,14 @@ export const NAMES = { mesh: 'Mesh', reduced: 'Reduced points' };
 export class Saving {
   #session;
   #fail;
-  #button = byId('save', HTMLButtonElement);
-  #what = byId('save-what', HTMLElement);
-  #detail = byId('save-detail', HTMLElement);
-  #menu = byId('formats', HTMLDetailsElement);
-  #list = byId('format-list', HTMLElement);
-  #note = byId('save-note', HTMLElement);
-  #printing = byId('printing', HTMLElement);
-  #close = byId('close-holes', HTMLButtonElement);
+  #button = page.save;
+  #what = page.saveWhat;
+  #detail = page.saveDetail;
+  #menu = page.formats;
+  #list = page.formatList;
+  #note = page.saveNote;
+  #printing = page.printing;
+  #close = page.closeHoles;
   /** The mesh can be printed. */
   #prints = false;
   #web;
@@ -66,14 +67,14 @@ export class Saving {
    * @param {Session} session
    * @param {import('../look/look.js').Look} look
    * @param {(error: unknown, name: string) => void} fail
-   * @param {() => void} close  has all holes closed
+   * @param {(how: 'closed' | 'base') => void} close  has all holes closed, or the mesh ended in a flat base where its floor was
    */
   constructor(session, look, fail, close) {
     this.#session = session;
     this.#web = new WebSaving(session, look, fail);
     this.#fail = fail;
     this.#button.addEventListener('click', () => this.#first && this.#save(...this.#first));
-    this.#close.addEventListener('click', close);
+    this.#close.addEventListener('click', () => close(this.#closing));
     this.#menu.addEventListener('toggle', () => this.#menu.open && this.#listAll());
   }
 
@@ -120,7 +121,13 @@ export class Saving {
     const { ready, words } = printingWords(solid, mesh.unit);
     this.#prints = ready;
     this.#printing.textContent = words;
-    this.#close.hidden = solid.closed || this.#session.settings.get('boundary') === 'closed';
+    this.#close.textContent = this.#closing === 'base' ? say('Close it with a flat base') : say('Close all holes');
+    this.#close.hidden = solid.closed || this.#session.settings.get('boundary') === this.#closing;
+  }
+
+  /** What helps a mesh that is open: what stood on a floor stands flat. @returns {'closed' | 'base'} */
+  get #closing() {
+    return this.#outcome?.scan.cloud.floor ? 'base' : 'closed';
   }
 
   /** A row for each format that the package writes; sizes appear as the files are made. */

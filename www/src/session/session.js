@@ -2,6 +2,7 @@ import { autoCount, createEngine, flip, read, reconstruct, reduce, sample, split
 import { frameOf } from 'pointweave/viewer';
 import { COMPRESSED, expandAside } from './compressing.js';
 import { fetchBytes, ownAddress } from './fetching.js';
+import { Reading } from './parts.js';
 import { Preparing } from './preparing.js';
 import { scaled } from '../measure/lengths.js';
 import { SAMPLES } from '../controls/samples.js';
@@ -13,15 +14,18 @@ import { say } from '../words/say.js';
  * @import { FileCloud, PointCloud, Prepared, Progress, ReducedCloud, Step, SurfaceMesh } from 'pointweave'
  * @import { Frame } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
+ * @import { Part } from './parts.js'
  * @import { Target } from '../controls/settings.js'
  *
  * Where a scan comes from: a title to show, a name to save under, and where it can be had again.
  * `key`: under which the browser keeps a file, `columns`: what those of a table were said to hold.
- * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File, key?: string, columns?: string[] }} Source
+ * `parts`: of several files, which of them are shown.
+ * @typedef {{ title: string, file: string, model?: SampleName, src?: string, given?: File, key?: string, columns?: string[], parts?: Part[] }} Source
  * What the file itself says of how it stands. @typedef {Pick<PointCloud, 'up' | 'unit'>} Own
  * @typedef {PointCloud & Partial<Pick<FileCloud, 'file' | 'columns' | 'skipped'>>} Opened
  * `kept`: of a scan that was tidied, which points of the file are left.
- * @typedef {Source & { cloud: Opened, count: number, frame: Frame, own: Own, kept?: Uint32Array }} Scan
+ * `clouds`: those of its parts.
+ * @typedef {Source & { cloud: Opened, clouds?: PointCloud[], count: number, frame: Frame, own: Own, kept?: Uint32Array }} Scan
  * @typedef {{ scan: Scan, reduced: ReducedCloud, mesh: SurfaceMesh | null }} Outcome
  * @typedef {'starting' | 'reading' | 'working' | 'ready'} State
  */
@@ -37,7 +41,7 @@ const NO_SURFACE = new Set(['degenerate', 'too-few-points']);
  * not be opened, or the title of a scan that could not be worked on.
  * @extends {Emitter<{
  *   state: State, opened: Scan, cut: Scan, progress: { stage: string, overall: number }, made: Outcome, turned: Outcome, cancelled: undefined,
- *   failed: { error: any, title: string, given?: File, model?: SampleName },
+ *   unread: File, failed: { error: any, title: string, given?: File, model?: SampleName },
  * }>}
  */
 export class Session extends Emitter {
@@ -51,6 +55,7 @@ export class Session extends Emitter {
   /** What is saved is so many times as large as the file says. */
   scale = 1;
   #preparing = new Preparing();
+  #reading = new Reading();
   /** What the recipe left; null where there is none. @type {Prepared<any> | null} */
   #prepared = null;
   /** @type {Outcome | null} the last result of the open scan */
@@ -73,7 +78,7 @@ export class Session extends Emitter {
   /** Generates one of the package's simulated scans and makes its mesh. */
   openSample(/** @type {SampleName} */ model) {
     const { title, count } = SAMPLES[model];
-    return this.#open({ title: say(title), file: model, model }, (signal) => sample(model, { count, seed: 1, signal }));
+    return this.#open({ title: say(title), file: model, model }, async (signal) => ({ cloud: await sample(model, { count, seed: 1, signal }) }));
   }
 
   /**
@@ -85,7 +90,22 @@ export class Session extends Emitter {
   openFile(file, { columns, beside, key } = {}) {
     const source = { title: file.name, file: stem(file.name), given: file, key, columns };
     return this.#open(source, async (signal) => {
-      return readAny(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) });
+      return { cloud: await readAny(file, { name: file.name, columns, beside, signal, onProgress: this.#report(signal) }) };
+    });
+  }
+
+  /**
+   * Reads several files of the person's and makes the mesh of all as one.
+   * @param {File[]} files
+   * @param {Part[]} parts which of them are scans, and which of these are shown; a mesh may name the others
+   * @param {string} key where the browser keeps them
+   */
+  openParts(files, parts, key) {
+    const shown = parts.flatMap(({ of, off }) => (off ? [] : [files[of]]));
+    return this.#open({ title: shown[0].name, file: stem(shown[0].name), key, parts }, (signal) => {
+      /** @type {(file: File, watch: any) => Promise<Opened>} */
+      const readOne = (file, watch) => readAny(file, { name: file.name, beside: files.filter((other) => other !== file), ...watch });
+      return this.#reading.all(shown, readOne, (file) => this.emit('unread', file), { signal, onProgress: this.#report(signal) });
     });
   }
 
@@ -107,7 +127,7 @@ export class Session extends Emitter {
     return this.#open({ title: name, file: stem(name), src }, async (signal) => {
       const onProgress = this.#report(signal);
       const bytes = await fetchBytes(ownAddress(src), signal, (share) => onProgress({ stage: 'download', overall: share }));
-      return readAny(bytes, { name, signal, onProgress });
+      return { cloud: await readAny(bytes, { name, signal, onProgress }) };
     });
   }
 
@@ -153,8 +173,7 @@ export class Session extends Emitter {
 
   /** What a recipe would leave of the scan as it was opened. @param {Step[]} recipe @param {AbortSignal} signal */
   async tried(recipe, signal) {
-    const { cloud } = /** @type {Scan} */ (this.whole);
-    return this.#preparing.of(cloud, recipe, { signal });
+    return this.#preparing.of(/** @type {Scan} */ (this.whole), recipe, { signal });
   }
 
   /** What each step of the recipe did. */
@@ -164,6 +183,7 @@ export class Session extends Emitter {
 
   /** The floor of a scan, by at most so many of its points; undefined where there is none. @param {Scan} scan @param {number} most @param {AbortSignal} signal */
   async floor({ cloud: { positions, up }, count }, most, signal) {
+    await nextTask();
     const step = Math.ceil(count / most);
     const some = positions.slice(0, 3 * Math.ceil(count / step));
     for (let i = 0; i < some.length; i++) some[i] = positions[3 * step * Math.floor(i / 3) + (i % 3)];
@@ -253,24 +273,29 @@ export class Session extends Emitter {
 
   /**
    * @param {Source} source
-   * @param {(signal: AbortSignal) => Promise<Opened>} load
+   * @param {(signal: AbortSignal) => Promise<{ cloud: Opened, clouds?: Opened[] }>} load
    */
   async #open(source, load) {
     const job = this.#begin('reading');
     try {
       // One pass over the points a task.
-      const cloud = splitOrigin(await load(job.signal));
+      const { cloud: loaded, clouds } = await load(job.signal);
+      const cloud = splitOrigin(loaded);
       await nextTask();
       const frame = frameOf(cloud);
       await nextTask();
       if (job.signal.aborted) return;
       const count = cloud.positions.length / 3;
       if (count === 0) throw Object.assign(new Error('the file holds no points'), { code: 'empty-cloud' });
-      this.scan = this.whole = { ...source, cloud, count, frame, own: { up: cloud.up, unit: cloud.unit } };
+      const title = clouds && clouds.length > 1 ? say('{count} scans', { count: clouds.length }) : source.title;
+      this.scan = this.whole = { ...source, title, cloud, clouds, count, frame, own: { up: cloud.up, unit: cloud.unit } };
       this.recipe = [];
       this.#prepared = null;
       this.outcome = this.#unturned = null;
       this.emit('opened', this.scan);
+      // The picture of it is a task, and its way to the engine another.
+      await nextTask();
+      if (job.signal.aborted) return;
     } catch (error) {
       this.#end(job, 'failed', { error, ...source });
       // The scan that was open stays; the job that this file interrupted goes on, one that was cancelled does not.
@@ -283,7 +308,7 @@ export class Session extends Emitter {
   /** Shows what the recipe leaves, unless that is what is shown. @param {Scan} whole @param {AbortSignal} signal @returns {Promise<Scan>} */
   async #cut(whole, signal) {
     const onProgress = this.#report(signal);
-    const prepared = this.recipe.length ? await this.#preparing.of(whole.cloud, this.recipe, { signal, onProgress }) : null;
+    const prepared = this.recipe.length ? await this.#preparing.of(whole, this.recipe, { signal, onProgress }) : null;
     if (signal.aborted || prepared === this.#prepared) return /** @type {Scan} */ (this.scan);
     const scan = prepared ? await leftOf(whole, prepared) : whole;
     await nextTask();
@@ -360,7 +385,7 @@ async function readAny(data, options) {
 /** A scan without what was cut off. @param {Scan} whole @param {Prepared<any>} prepared @returns {Promise<Scan>} */
 async function leftOf(whole, { cloud: left, kept }) {
   await nextTask();
-  const cloud = { ...left, up: whole.cloud.up, unit: whole.cloud.unit };
+  const cloud = splitOrigin({ ...left, up: whole.cloud.up, unit: whole.cloud.unit });
   return { ...whole, cloud, count: kept.length, frame: frameOf(cloud), kept };
 }
 

@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { copyText } from '../clipboard.js';
 import { say } from '../words/say.js';
 
@@ -6,18 +6,17 @@ import { say } from '../words/say.js';
 
 /** A link to the same settings, and a snippet that shows the saved mesh in any page. */
 export class Sharing {
-  #link = byId('share-link', HTMLInputElement);
-  #embed = byId('share-embed', HTMLTextAreaElement);
-  #note = byId('share-note', HTMLElement);
+  #link = page.shareLink;
+  #embed = page.shareEmbed;
+  #note = page.shareNote;
   /** A saved poster, and the mesh that it is of. */
   #poster = { of: '', name: '' };
   #file = '';
   #title = '';
 
   constructor() {
-    for (const [field, button] of /** @type {const} */ ([['share-link', 'copy-link'], ['share-embed', 'copy-embed']])) {
-      const text = /** @type {HTMLInputElement | HTMLTextAreaElement} */ (document.getElementById(field));
-      byId(button, HTMLButtonElement).addEventListener('click', ({ currentTarget }) => {
+    for (const [text, button] of /** @type {const} */ ([[this.#link, page.copyLink], [this.#embed, page.copyEmbed]])) {
+      button.addEventListener('click', ({ currentTarget }) => {
         text.select();
         copyText(text.value, /** @type {HTMLButtonElement} */ (currentTarget));
       });

@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import { scaled } from '../measure/lengths.js';
 import * as format from '../results/format.js';
 import { printingWords, solidOf } from '../results/printing.js';
@@ -19,12 +20,12 @@ export class WebSaving {
   #look;
   #fail;
   #models = new LightModels();
-  #box = byId('web', HTMLDetailsElement);
-  #presets = byId('web-presets', HTMLFieldSetElement);
-  #words = byId('web-words', HTMLElement);
-  #bar = byId('web-bar', HTMLProgressElement);
-  #cancel = byId('web-cancel', HTMLButtonElement);
-  #files = byId('web-files', HTMLElement);
+  #box = page.web;
+  #presets = page.webPresets;
+  #words = page.webWords;
+  #bar = page.webBar;
+  #cancel = page.webCancel;
+  #files = page.webFiles;
   /** What models are made of. @type {Outcome | null} */
   #outcome = null;
   /** @type {AbortController | null} */

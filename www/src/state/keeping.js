@@ -18,9 +18,8 @@ export function keyOf({ name, size, lastModified }) {
   return `${name} ${size} ${lastModified}`;
 }
 
-/** Keeps a file, unless it is kept already. @param {File} file @param {File[]} beside what its mesh may name */
-export async function keep(file, beside) {
-  const key = keyOf(file);
+/** Keeps a file, unless it is kept already. @param {File} file @param {File[]} beside what its mesh may name, and the other parts of its scan @param {string} [key] */
+export async function keep(file, beside, key = keyOf(file)) {
   if (open.get(key)?.beside.length === beside.length) return;
   open.set(key, { file, beside });
   try {

@@ -4,10 +4,12 @@ import { Emitter } from './emitter.js';
  * @import { Step, Unit } from 'pointweave'
  * @import { Axis } from 'pointweave/viewer'
  * @import { SampleName } from '../controls/samples.js'
+ * @import { Part } from '../session/parts.js'
  * @import { Target } from '../controls/settings.js'
  *
  * Where a scan comes from: a sample, a file beside the page, or one of the person's that the browser keeps under a key.
- * @typedef {{ model: SampleName } | { src: string } | { key: string, columns?: string[] }} From
+ * Of several files as one scan, `parts` says which are shown.
+ * @typedef {{ model: SampleName } | { src: string } | { key: string, columns?: string[], parts?: Part[] }} From
  * A step of the recipe that tidies a scan, which may be switched off. @typedef {Step & { off?: true }} Listed
  * What a person said of a scan or did to it: which way is up, the unit, how many times larger it is than its file says, what is cut off, and
  * triangles of its mesh whose pieces were turned over.

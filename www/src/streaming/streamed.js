@@ -3,7 +3,8 @@
  * away; a scan that a person opens takes the page back to all of it.
  */
 import 'pointweave/tiles';
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { helpDialog } from '../help.js';
 import { describeKeys, listenToKeys } from '../keys.js';
 import { Look } from '../look/look.js';
@@ -34,7 +35,7 @@ export function isTileset(src) {
 }
 
 export class Streamed {
-  #root = byId('app', HTMLElement);
+  #root = page.app;
   #look = new Look(this.#root, () => {}, () => {});
   #measure = new Measure(this.#look, () => {}, () => {});
   #choose = acceptFiles((files) => this.#leave(files));
@@ -49,12 +50,12 @@ export class Streamed {
     const [file = '', folder = ''] = src.split(/[?#]/)[0].split('/').reverse();
     this.#title = file === 'tileset.json' && folder ? folder : file.replace(/\.json$/i, '');
     this.#root.dataset.streams = '';
-    byId('streamed', HTMLElement).hidden = false;
-    byId('choose', HTMLButtonElement).addEventListener('click', this.#choose);
-    byId('stream-measure', HTMLButtonElement).addEventListener('click', () => this.#measure.toggle());
-    byId('skip', HTMLAnchorElement).addEventListener('click', (event) => {
+    page.streamed.hidden = false;
+    page.choose.addEventListener('click', this.#choose);
+    page.streamMeasure.addEventListener('click', () => this.#measure.toggle());
+    page.skip.addEventListener('click', (event) => {
       event.preventDefault();
-      byId('panel', HTMLElement).focus();
+      page.panel.focus();
     });
     tendMenus();
     this.#listen();
@@ -64,13 +65,13 @@ export class Streamed {
     const viewer = this.#look.aim;
     if (!viewer) return;
     document.title = `${this.#title} · Pointweave`;
-    byId('caption-title', HTMLElement).textContent = this.#title;
+    page.captionTitle.textContent = this.#title;
     viewer.addEventListener('stream', () => this.#tell(viewer));
     try {
       await viewer.stream(ownAddress(this.#src).href);
       this.#root.dataset.state = 'ready';
       this.#root.dataset.view = viewer.layers[0];
-      byId('caption-size', HTMLElement).textContent = (viewer.dimensions ?? []).map(format.length).join(' × ');
+      page.captionSize.textContent = (viewer.dimensions ?? []).map(format.length).join(' × ');
       this.#tell(viewer);
       announce(say('{name} is shown', { name: this.#title }));
     } catch (error) {
@@ -88,7 +89,7 @@ export class Streamed {
     const [shown, of] = [format.count(points), total ? format.count(total) : ''];
     const words = triangles && !points ? say('{count} triangles shown', { count: format.count(triangles) })
       : of ? say('{shown} of {total} points shown', { shown, total: of }) : say('{shown} points shown', { shown });
-    byId('caption-detail', HTMLElement).textContent = words;
+    page.captionDetail.textContent = words;
     const held = say('{held} of {budget}', { held: format.bytes(bytes), budget: format.bytes(budget) });
     for (const [name, value] of Object.entries({ points, total: total ?? 0, triangles, tiles, loading, failed, bytes })) {
       const cell = /** @type {HTMLDataElement} */ (document.querySelector(`data[data-stream="${name}"]`));
@@ -111,7 +112,7 @@ export class Streamed {
       { key: 'Escape', shown: 'Esc', does: say('Close a message or menu, cancel the work'), act: () => (this.#message.open ? this.#message.hide() : this.#measure.stop()) },
     ];
     const help = helpDialog(describeKeys(keys));
-    byId('help-open', HTMLButtonElement).addEventListener('click', help);
+    page.helpOpen.addEventListener('click', help);
     listenToKeys(keys);
   }
 

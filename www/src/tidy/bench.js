@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 import { tinted } from './tint.js';
 
@@ -25,8 +25,8 @@ export class Bench {
   #look;
   /** @type {() => Step[]} */
   #before;
-  #words = byId('tidy-words', HTMLElement);
-  #buttons = [byId('tidy-apply', HTMLButtonElement), byId('tidy-cut', HTMLButtonElement)];
+  #words = page.tidyWords;
+  #buttons = [page.tidyApply, page.tidyCut];
   /** @type {AbortController | null} */
   #trial = null;
   /** The colours that were asked for last. @type {object | null} */

@@ -1,4 +1,5 @@
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { rounded } from './recipe.js';
@@ -18,8 +19,8 @@ const EDGES = [0, 1, 2].flatMap((axis) => Array.from({ length: 8 }, (_, corner) 
 /** Keeps, or deletes, what is inside of a box, whose faces are dragged in the picture, or set by numbers. */
 export class Crop {
   #bench;
-  #box = byId('tidy-crop', HTMLElement);
-  #over = byId('tidy-box', HTMLElement);
+  #box = page.tidyCrop;
+  #over = page.tidyBox;
   #lines;
   /** @type {Box} */
   #now = { center: [0, 0, 0], half: [1, 1, 1], turn: [0, 0, 0] };

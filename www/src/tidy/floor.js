@@ -1,4 +1,5 @@
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { among } from './bench.js';
@@ -13,10 +14,10 @@ const HIGHEST = 0.1;
 /** Removes the floor, or other planes that a person chooses, and what is close above it. */
 export class Floor {
   #bench;
-  #box = byId('tidy-floor', HTMLElement);
-  #list = byId('tidy-planes', HTMLUListElement);
-  #height = byId('tidy-height', HTMLInputElement);
-  #row = byId('tidy-height-row', HTMLElement);
+  #box = page.tidyFloor;
+  #list = page.tidyPlanes;
+  #height = page.tidyHeight;
+  #row = page.tidyHeightRow;
   /** @type {PlaneReport[]} */
   #planes = [];
   /** Of a point that is shown. @type {(point: number) => number} */

@@ -1,4 +1,5 @@
-import { announce, byId, element } from '../dom.js';
+import { announce, element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { among } from './bench.js';
@@ -14,10 +15,10 @@ const LISTED = 24;
 /** Keeps pieces that a person chooses, by a click on one or in a list. At first that is the largest. */
 export class Pieces {
   #bench;
-  #box = byId('tidy-pieces', HTMLElement);
-  #list = byId('tidy-pieces-list', HTMLUListElement);
-  #rest = byId('tidy-pieces-rest', HTMLElement);
-  #gap = byId('tidy-gap', HTMLInputElement);
+  #box = page.tidyPieces;
+  #list = page.tidyPiecesList;
+  #rest = page.tidyPiecesRest;
+  #gap = page.tidyGap;
   #click;
   /** @type {PieceReport[]} */
   #pieces = [];
@@ -29,7 +30,7 @@ export class Pieces {
 
   constructor(/** @type {Bench} */ bench) {
     this.#bench = bench;
-    this.#click = new Still(byId('canvas', HTMLCanvasElement), (x, y) => this.#clicked(x, y));
+    this.#click = new Still(page.canvas, (x, y) => this.#clicked(x, y));
     this.#gap.addEventListener('change', () => this.begin());
     this.#list.addEventListener('change', ({ target }) => this.#toggle(Number(/** @type {HTMLInputElement} */ (target).value)));
   }

@@ -37,6 +37,7 @@ export function switchedOff(recipe = [], { code, message }) {
 /** What a step does, in words. @param {Step} step */
 export function stepWords(step) {
   switch (step.step) {
+    case 'register': return say('Scans registered');
     case 'outliers': return say('Isolated points removed');
     case 'flying': return say('Flying pixels removed');
     case 'plane': return planeWords(step.drop);

@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { cornersOf, coveredBy, insideOf, joinedShape, simplified, without } from './shapes.js';
@@ -17,9 +17,9 @@ const APART = 4;
 export class Select {
   #bench;
   #kind;
-  #over = byId('tidy-draw', HTMLElement);
-  #box = byId('tidy-select', HTMLElement);
-  #modes = byId('tidy-modes', HTMLFieldSetElement);
+  #over = page.tidyDraw;
+  #box = page.tidySelect;
+  #modes = page.tidyModes;
   #sides = /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll('[data-select]')]);
   #outline;
   /** What is selected: x from -1 at the left to 1, y from -1 at the bottom. @type {Shape} */
@@ -135,7 +135,7 @@ export class Select {
 
   /** The outline of what is selected, and of what is being drawn. */
   #trace() {
-    const { clientWidth, clientHeight } = byId('canvas', HTMLCanvasElement);
+    const { clientWidth, clientHeight } = page.canvas;
     const rings = this.#shape.map((ring) => ring.map(([x, y]) => [((x + 1) * clientWidth) / 2, ((1 - y) * clientHeight) / 2]));
     this.#outline.setAttribute('d', [...rings, this.#line].filter(({ length }) => length > 1).map((ring) => `M${ring.map((corner) => corner.map((value) => value.toFixed(1)).join(' ')).join('L')}Z`).join(''));
   }

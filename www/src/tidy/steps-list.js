@@ -1,5 +1,6 @@
 import { copyText } from '../clipboard.js';
-import { byId, element } from '../dom.js';
+import { element } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 import { stepWords, stepsOf } from './recipe.js';
@@ -9,9 +10,9 @@ import { stepWords, stepsOf } from './recipe.js';
 
 /** What was cut off, step by step: each can be switched off and on again, and removed. */
 export class StepsList {
-  #box = byId('tidy-done', HTMLElement);
-  #rows = byId('tidy-steps', HTMLOListElement);
-  #note = byId('tidy-note', HTMLElement);
+  #box = page.tidyDone;
+  #rows = page.tidySteps;
+  #note = page.tidyNote;
   #changed;
   /** @type {Listed[]} */
   #recipe = [];
@@ -19,7 +20,7 @@ export class StepsList {
   /** @param {(recipe: Listed[]) => void} changed */
   constructor(changed) {
     this.#changed = changed;
-    const copy = byId('tidy-copy', HTMLButtonElement);
+    const copy = page.tidyCopy;
     copy.addEventListener('click', () => copyText(JSON.stringify(stepsOf(this.#recipe), null, 2), copy));
   }
 

@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -8,9 +8,9 @@ import { say } from '../words/say.js';
 /** Removes points that belong to nothing: isolated ones, and those that fly at the edges of things. */
 export class Strays {
   #bench;
-  #box = byId('tidy-strays', HTMLElement);
+  #box = page.tidyStrays;
   #kinds = /** @type {['outliers' | 'flying', HTMLInputElement][]} */ ([
-    ['outliers', byId('tidy-outliers', HTMLInputElement)], ['flying', byId('tidy-flying', HTMLInputElement)],
+    ['outliers', page.tidyOutliers], ['flying', page.tidyFlying],
   ]);
 
   constructor(/** @type {Bench} */ bench) {

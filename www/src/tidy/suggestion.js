@@ -1,4 +1,4 @@
-import { byId } from '../dom.js';
+import { page } from '../page.js';
 import * as format from '../results/format.js';
 import { say } from '../words/say.js';
 
@@ -12,19 +12,19 @@ const MOST = 50_000;
 /** Says that most of a scan is a floor, where it is so, and offers to remove it. Does nothing of itself. */
 export class Suggestion {
   #session;
-  #box = byId('suggestion', HTMLElement);
-  #words = byId('suggestion-words', HTMLElement);
+  #box = page.suggestion;
+  #words = page.suggestionWords;
   /** @type {AbortController | null} */
   #look = null;
 
   /** @param {Session} session @param {() => void} accept */
   constructor(session, accept) {
     this.#session = session;
-    byId('suggestion-yes', HTMLButtonElement).addEventListener('click', () => {
+    page.suggestionYes.addEventListener('click', () => {
       this.hide();
       accept();
     });
-    byId('suggestion-no', HTMLButtonElement).addEventListener('click', () => this.hide());
+    page.suggestionNo.addEventListener('click', () => this.hide());
   }
 
   /** Looks at a scan that was opened. */

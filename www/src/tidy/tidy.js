@@ -1,4 +1,5 @@
-import { announce, byId } from '../dom.js';
+import { announce } from '../dom.js';
+import { page } from '../page.js';
 import { say } from '../words/say.js';
 import { Bench, refusal } from './bench.js';
 import { Crop } from './crop.js';
@@ -32,10 +33,10 @@ const MARGIN = 24;
 
 /** The step before the reduction: what is not the object is cut off, by tools that first show what would go. */
 export class Tidy {
-  #root = byId('app', HTMLElement);
-  #bar = byId('tidy-bar', HTMLElement);
-  #apply = byId('tidy-apply', HTMLButtonElement);
-  #cut = byId('tidy-cut', HTMLButtonElement);
+  #root = page.app;
+  #bar = page.tidyBar;
+  #apply = page.tidyApply;
+  #cut = page.tidyCut;
   #buttons = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll('[data-tool]')]);
   #session;
   #look;
@@ -74,7 +75,7 @@ export class Tidy {
     }
     this.#apply.addEventListener('click', () => this.#do(false));
     this.#cut.addEventListener('click', () => this.#do(true));
-    byId('tidy-cancel', HTMLButtonElement).addEventListener('click', () => this.stop());
+    page.tidyCancel.addEventListener('click', () => this.stop());
   }
 
   /** A tool is shown. */
@@ -118,7 +119,7 @@ export class Tidy {
     this.#cut.hidden = !cut;
     this.#bar.hidden = false;
     this.#bar.focus({ preventScroll: true });
-    byId('stage', HTMLElement).scrollIntoView({ block: 'nearest' });
+    page.stage.scrollIntoView({ block: 'nearest' });
     this.#bench.say('', false);
     this.#bench.show(() => {});
     this.#tools[name].begin();

@@ -1,5 +1,7 @@
 import tidy from './de-tidy.js';
 import doubts from './de-doubts.js';
+import reasons from './de-reasons.js';
+import scans from './de-scans.js';
 import streaming from './de-streaming.js';
 import web from './de-web.js';
 
@@ -8,6 +10,8 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...reasons,
+  ...scans,
   ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave: aus einem 3D-Scan wird ein leichtes, korrektes Modell',
   'Skip to the controls': 'Zu den Einstellungen springen',
@@ -264,6 +268,7 @@ export default {
   'Holes': 'Löcher',
   'What happens where nothing was scanned.': 'Was geschieht, wo nichts gescannt wurde.',
   'Close small ones': 'Kleine schließen',
+  'Flat base': 'Flacher Boden',
   'Close all': 'Alle schließen',
   'Leave open': 'Offen lassen',
   'Number of points': 'Anzahl der Punkte',

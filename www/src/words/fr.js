@@ -1,5 +1,7 @@
 import tidy from './fr-tidy.js';
 import doubts from './fr-doubts.js';
+import reasons from './fr-reasons.js';
+import scans from './fr-scans.js';
 import streaming from './fr-streaming.js';
 import web from './fr-web.js';
 
@@ -8,6 +10,8 @@ export default {
   ...tidy,
   ...doubts,
   ...web,
+  ...reasons,
+  ...scans,
   ...streaming,
   'Pointweave: a 3D scan becomes a light, correct model': 'Pointweave : un scan 3D devient un modèle léger et correct',
   'Skip to the controls': 'Aller aux réglages',
@@ -264,6 +268,7 @@ export default {
   'Holes': 'Trous',
   'What happens where nothing was scanned.': 'Ce qui se passe où rien n’a été scanné.',
   'Close small ones': 'Fermer les petits',
+  'Flat base': 'Base plate',
   'Close all': 'Tous fermer',
   'Leave open': 'Laisser ouverts',
   'Number of points': 'Nombre de points',
