@@ -44,7 +44,7 @@ pub(crate) fn stand(mesh: &mut Mesh, ground: &Ground) -> Vec<Rim> {
         .unwrap_or_else(|| mesh.vertices.iter().map(over).fold(f64::INFINITY, f64::min));
     cut(mesh, up, floor);
     drop_crumbs(mesh, up, floor);
-    drop_unused(mesh);
+    mesh.drop_unused();
     let mut rims = caps::rims(mesh);
     for rim in &mut rims {
         if stands(mesh, rim, up, floor) {
@@ -125,21 +125,6 @@ fn drop_crumbs(mesh: &mut Mesh, up: DVec3, floor: f64) {
         Some(count) == most || top > EDGES * length / count as f64
     };
     (mesh.triangles).retain(|t| pieces.get(&sets.find(t[0])).is_some_and(stays));
-}
-
-/// Drops vertices that no triangle has.
-fn drop_unused(mesh: &mut Mesh) {
-    let mut index = vec![u32::MAX; mesh.vertices.len()];
-    mesh.triangles
-        .as_flattened()
-        .iter()
-        .for_each(|&v| index[v as usize] = 0);
-    let used: Vec<usize> = (0..index.len()).filter(|&v| index[v] == 0).collect();
-    (0..).zip(&used).for_each(|(new, &v)| index[v] = new);
-    mesh.vertices = used.iter().map(|&v| mesh.vertices[v]).collect();
-    mesh.normals = used.iter().map(|&v| mesh.normals[v]).collect();
-    let corners = mesh.triangles.as_flattened_mut();
-    corners.iter_mut().for_each(|v| *v = index[*v as usize]);
 }
 
 /// Mean length of a rim's edges.

@@ -27,6 +27,7 @@
 pub mod attach;
 pub(crate) mod band;
 pub(crate) mod base;
+pub(crate) mod boxes;
 pub(crate) mod caps;
 pub(crate) mod collapse;
 pub(crate) mod creases;

@@ -83,7 +83,7 @@ pub(crate) fn simplify(
         }
         collapse(mesh, &around, &order, needed, &mut ranking, &mut tell)?;
     }
-    drop_unused(mesh);
+    mesh.drop_unused();
     Ok(())
 }
 
@@ -187,21 +187,4 @@ impl Ranking {
         sorted.sort_unstable();
         sorted.into_iter().map(|cheap| unpack(cheap).1).collect()
     }
-}
-
-/// Drops vertices that no triangle uses.
-fn drop_unused(mesh: &mut Mesh) {
-    let mut index = vec![u32::MAX; mesh.vertices.len()];
-    let corners = mesh.triangles.as_flattened_mut();
-    corners.iter().for_each(|&v| index[v as usize] = 0);
-    let mut kept = 0;
-    for (v, index) in index.iter_mut().enumerate().filter(|i| *i.1 == 0) {
-        *index = kept as u32;
-        mesh.vertices[kept] = mesh.vertices[v];
-        mesh.normals[kept] = mesh.normals[v];
-        kept += 1;
-    }
-    mesh.vertices.truncate(kept);
-    mesh.normals.truncate(kept);
-    corners.iter_mut().for_each(|v| *v = index[*v as usize]);
 }

@@ -59,4 +59,21 @@ impl Mesh {
         self.normals.iter_mut().for_each(|n| *n = -*n);
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
+
+    /// Drops vertices that no triangle has.
+    pub(crate) fn drop_unused(&mut self) {
+        let mut index = vec![u32::MAX; self.vertices.len()];
+        let corners = self.triangles.as_flattened_mut();
+        corners.iter().for_each(|&v| index[v as usize] = 0);
+        let mut kept = 0;
+        for (v, index) in index.iter_mut().enumerate().filter(|i| *i.1 == 0) {
+            *index = kept as u32;
+            self.vertices[kept] = self.vertices[v];
+            self.normals[kept] = self.normals[v];
+            kept += 1;
+        }
+        self.vertices.truncate(kept);
+        self.normals.truncate(kept);
+        corners.iter_mut().for_each(|v| *v = index[*v as usize]);
+    }
 }
