@@ -1,8 +1,8 @@
-//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [edges] [lines] [grain] [time] [million] [CLOUD.f32 …]`
+//! `cargo run --release --example surface_truth [orient] [topology] [ends] [accuracy] [edges] [lines] [grain] [normals] [time] [million] [CLOUD.f32 …]`
 //!
 //! What reconstruction promises, measured on generated clouds whose surface is known: which side is out, what is never
 //! allowed in a mesh, where open surfaces end, how near the mesh is to the truth and how many triangles it takes, how
-//! grainy it is, and where the time goes. All sections run unless some are named; a promise that is not kept is marked with `<--`.
+//! grainy it is, what normals of a cloud are worth, and where the time goes. All sections run unless some are named; a promise that is not kept is marked with `<--`.
 //! Raw clouds (`x y z` as f32) have no truth: their topology, ends and triangles are printed.
 
 mod accuracy;
@@ -14,6 +14,7 @@ mod lines;
 mod measure;
 #[path = "../../common/mesh.rs"]
 mod mesh;
+mod normals;
 mod orient;
 mod topology;
 
@@ -54,6 +55,9 @@ fn main() -> io::Result<()> {
     }
     if is_asked("grain") {
         grain::run();
+    }
+    if is_asked("normals") {
+        normals::run();
     }
     for file in &files {
         topology::rows(file, &read(file)?);
