@@ -34,14 +34,8 @@
 #![deny(missing_docs)]
 // Who changes a stage reads its docs with `--document-private-items`; for who calls it such names are text.
 #![allow(rustdoc::private_intra_doc_links)]
-// Of the base, what only stages call; of the border, what only the engine does.
-#![cfg_attr(
-    any(
-        not(feature = "stages"),
-        all(any(feature = "light", feature = "prepare"), not(feature = "engine"))
-    ),
-    allow(dead_code)
-)]
+// A wasm module takes what it needs; what nobody needs is found natively, where all of them are.
+#![cfg_attr(not(all(feature = "light", feature = "tiles")), allow(dead_code))]
 
 // The wings, in the order in which data flows through them. Each imports only those above it.
 pub mod base;
