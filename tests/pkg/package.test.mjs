@@ -96,7 +96,7 @@ test('what is not called is left out of a bundle, and the worker is not', async 
  */
 const ELEMENT = { element: 14_900, viewer: 164_500, glb: 165_500, tiles: 172_000 };
 /** Most bytes of `element.min.js` and of `element-tiles.min.js`, which it loads for a tileset, gzipped. */
-const FILES = { file: 231_000, streams: 25_900 };
+const FILES = { file: 234_000, streams: 25_900 };
 
 test('the element is not larger than its budget', async (t) => {
   const { outputFiles, metafile: { outputs } } = await build({
@@ -136,8 +136,8 @@ test('the element in one file is not larger than its budget, and names nothing t
 
 /** Most bytes of each part, gzipped: about one per cent more than it has. */
 const BUDGET = {
-  single: 413_000, threads: 458_000, files: 187_000, las: 123_000, e57: 148_000, packed: 254_000, pictures: 174_000,
-  exports: 224_000, prepare: 194_000, light: 312_000, samples: 44_000, script: 22_300,
+  single: 415_000, threads: 460_000, files: 188_000, las: 123_000, e57: 148_000, packed: 255_000, pictures: 174_000,
+  exports: 225_000, prepare: 195_000, light: 314_000, samples: 44_000, script: 22_300,
 };
 
 test('nothing is larger than its budget', async () => {
