@@ -47,7 +47,9 @@ export class StepsList {
     const label = element('label', { className: 'check' });
     const check = element('input', { type: 'checkbox', id: `tidy-step-${i}`, checked: !step.off });
     check.addEventListener('change', () => this.#changed(this.#recipe.map((one, k) => (k === i ? switched(one) : one))));
-    const detail = report?.step === step.step ? `−${format.count(report.dropped)}` : '';
+    // Registering drops nothing but what fits no other.
+    const says = report?.step === step.step && (report.dropped > 0 || step.step !== 'register');
+    const detail = says ? `−${format.count(report.dropped)}` : '';
     label.append(check, element('span', { textContent: words }), element('span', { className: 'detail', textContent: detail }));
     const remove = element('button', { type: 'button', className: 'tool', id: `tidy-remove-${i}`, ariaLabel: say('Remove this step: {step}', { step: words }), title: say('Remove this step: {step}', { step: words }) });
     remove.innerHTML = '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>';
