@@ -67,23 +67,23 @@ pub(crate) struct Known {
 impl Features {
     /// Measures them. Cost: a plane and two filter sums a point.
     pub fn measure(tree: &Octree, progress: &mut dyn Progress) -> Result<Features> {
-        let unknown = Clues {
+        let none = Clues {
             eye: &|_| None,
             normal: None,
         };
-        Features::measure_known(tree, &unknown, progress)
+        Features::measure_with(tree, &none, progress)
     }
 
     /// [`Features::measure`] of points of which more is known.
-    pub(crate) fn measure_known(
+    pub(crate) fn measure_with(
         tree: &Octree,
-        known: &Clues,
+        clues: &Clues,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
         Features::of_places(tree, progress, |places, point, progress| {
-            let normal = known.normal.map(|of| move |k| of(point(k)));
+            let normal = clues.normal.map(|of| move |k| of(point(k)));
             let of_places = Clues {
-                eye: &|k| (known.eye)(point(k)),
+                eye: &|k| (clues.eye)(point(k)),
                 normal: normal.as_ref().map(|of| of as &Normals),
             };
             Features::measure_distinct(places, &of_places, progress)
@@ -158,13 +158,13 @@ impl Features {
 
     fn measure_distinct(
         tree: &Octree,
-        known: &Clues,
+        clues: &Clues,
         progress: &mut dyn Progress,
     ) -> Result<Features> {
-        let steps = steps::noise(tree, known.eye);
+        let steps = steps::noise(tree, clues.eye);
         let Some(thinned) = Thinned::of(tree) else {
             let limits = (steps, f32::INFINITY);
-            return Features::measure_even(tree, limits, known.normal, progress);
+            return Features::measure_even(tree, limits, clues.normal, progress);
         };
         let places = Octree::build(&thinned.places);
         let noise = lines::noise(tree);
@@ -218,7 +218,8 @@ impl Features {
         };
         drop(planes);
         features.noise = noise(&features.normals);
-        let (first, second, late) = (0.4..0.55, 0.55..0.7, 0.7..1.0);
+        let once = if known.is_some() { 0.55 } else { 0.7 };
+        let (first, second, late) = (0.4..once, once..0.7, 0.7..1.0);
         let smooth = |features: &Features, progress: &mut dyn Progress, range| {
             features.pass(tree, &cells, (progress, range), |sums, denoise| {
                 sums.normals(denoise)

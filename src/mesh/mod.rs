@@ -204,7 +204,9 @@ impl Extracted {
                 rims = base::stand(&mut mesh, ground);
             }
             caps::close(&mut mesh, &rims);
-            filled = 1.0 - before / area(&mesh.vertices, &mesh.triangles);
+            // A base cuts off, too, and may leave nothing.
+            let after = area(&mesh.vertices, &mesh.triangles);
+            filled = (after - before).max(0.0) / after.max(f64::MIN_POSITIVE);
         }
         let crossings = crossings::mend(&mut mesh);
         Extracted {

@@ -71,6 +71,7 @@ impl<'a> Winding<'a> {
         }
         sum / (4.0 * PI)
     }
+
     /// [`Winding::around`] of up to eight positions in single precision: what each gets does not depend on the others.
     pub(crate) fn around_block(&self, block: &Block) -> Lanes {
         let (one, mut sum) = (Lanes::splat(1.0), Lanes::ZERO);

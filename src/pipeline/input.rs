@@ -39,18 +39,20 @@ pub(crate) fn measure(cloud: &Cloud, progress: &mut dyn Progress) -> Result<(Oct
         Some(normals) => normals[tree.order[i] as usize],
         None => Vec3::ZERO,
     };
-    let known = Clues {
+    let clues = Clues {
         eye: &eye,
         normal: cloud.normals.is_some().then_some(&own),
     };
-    let mut features = Features::measure_known(&tree, &known, progress)?;
-    let measured = features.normals.iter_mut().zip(&mut features.residual);
-    for (i, (normal, residual)) in measured.enumerate() {
-        if *normal == Vec3::ZERO {
-            *normal = own(i);
-        } else if own(i).dot(*normal) < 0.0 {
-            *normal = -*normal;
-            *residual = -*residual;
+    let mut features = Features::measure_with(&tree, &clues, progress)?;
+    if cloud.normals.is_some() {
+        let measured = features.normals.iter_mut().zip(&mut features.residual);
+        for (i, (normal, residual)) in measured.enumerate() {
+            if *normal == Vec3::ZERO {
+                *normal = own(i);
+            } else if own(i).dot(*normal) < 0.0 {
+                *normal = -*normal;
+                *residual = -*residual;
+            }
         }
     }
     Ok((tree, features))
